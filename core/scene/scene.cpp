@@ -1,0 +1,51 @@
+#include "core/scene/scene.h"
+
+#include <array>
+#include <cstddef>
+
+namespace ivory {
+
+const char* shape_word(const Skeleton& skeleton) {
+    // In the order of the alternatives of `Skeleton`.
+    constexpr std::array words{"point", "segment", "circle"};
+    static_assert(words.size() == std::variant_size_v<Skeleton>);
+    return words[skeleton.index()];
+}
+
+const char* kernel_word(KernelKind kernel) {
+    switch (kernel) {
+        case KernelKind::blinn:
+            return "blinn";
+        case KernelKind::nishimura:
+            return "nishimura";
+        case KernelKind::wyvill:
+            return "wyvill";
+    }
+    return "";
+}
+
+std::vector<std::string> element_names(const Scene& scene) {
+    std::vector<std::string> names;
+    names.reserve(scene.elements.size());
+    std::array<std::size_t, std::variant_size_v<Skeleton>> count{};
+    for (const Element& element : scene.elements) {
+        // Named elements count too, so that naming one does not rename those after it.
+        const std::size_t number = ++count[element.skeleton.index()];
+        names.push_back(element.name
+                            ? *element.name
+                            : shape_word(element.skeleton) + (" " + std::to_string(number)));
+    }
+    return names;
+}
+
+std::vector<Light> default_lights() {
+    const Light head{
+        .direction = {0, 0, 1}, .color = {1, 1, 1}, .intensity = 0.35, .attached_to_camera = true};
+    const Light key{.direction = {-0.4, 0.6, 0.7},
+                    .color = {1, 1, 1},
+                    .intensity = 0.8,
+                    .attached_to_camera = true};
+    return {head, key};
+}
+
+}  // namespace ivory

@@ -1,0 +1,86 @@
+// A scene as its file says it: plain data, an immutable value to everything downstream.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+// Linear RGB, each 0..1.
+using Color = Vec3d;
+
+// Field functions F(q), q = distance / width. Formulas: core/field/kernel.h.
+enum class KernelKind : unsigned char { blinn, nishimura, wyvill };
+
+struct PointSkeleton {
+    Vec3d position;
+    friend bool operator==(const PointSkeleton&, const PointSkeleton&) = default;
+};
+
+struct SegmentSkeleton {
+    Vec3d a, b;  // may coincide
+    friend bool operator==(const SegmentSkeleton&, const SegmentSkeleton&) = default;
+};
+
+// The curve, not the disc. The unit normal is normal / |normal| in exact arithmetic.
+struct CircleSkeleton {
+    Vec3d center;
+    Vec3d normal{0, 0, 1};  // any length but 0, kept as written
+    double radius = 1;      // >= 0
+    friend bool operator==(const CircleSkeleton&, const CircleSkeleton&) = default;
+};
+
+using Skeleton = std::variant<PointSkeleton, SegmentSkeleton, CircleSkeleton>;
+
+struct Element {
+    Skeleton skeleton;
+    std::optional<std::string> name{};  // as written; `element_names` gives the defaults too
+    Color color{0.8, 0.8, 0.8};
+    KernelKind kernel = KernelKind::blinn;
+    double strength = 1;  // b, finite, not 0; negative carves
+    double width = 1;     // w > 0, divides the distance
+    bool visible = true;  // false: not part of the field
+    friend bool operator==(const Element&, const Element&) = default;
+};
+
+struct Camera {
+    Vec3d position;
+    Vec3d target;
+    Vec3d up{0, 1, 0};
+    double fov = 40;  // the full vertical angle in degrees, 0 < fov < 180
+    friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+struct Light {
+    Vec3d direction;  // towards the light; any length but 0
+    Color color{1, 1, 1};
+    double intensity = 1;             // >= 0
+    bool attached_to_camera = false;  // direction in camera axes (right, up, back)
+    friend bool operator==(const Light&, const Light&) = default;
+};
+
+struct Scene {
+    double threshold = 0.5;  // T > 0
+    Color background{0.05, 0.06, 0.08};
+    std::optional<Camera> camera;              // without one: core/render/camera.h frames the scene
+    std::optional<std::vector<Light>> lights;  // without: `default_lights`
+    std::vector<Element> elements;
+    friend bool operator==(const Scene&, const Scene&) = default;
+};
+
+// "point", "segment" or "circle": the word of the file format.
+[[nodiscard]] const char* shape_word(const Skeleton& skeleton);
+[[nodiscard]] const char* kernel_word(KernelKind kernel);
+
+// One name per element, in file order: the written one, or shape and number among its shape
+// ("point 1", "segment 2").
+[[nodiscard]] std::vector<std::string> element_names(const Scene& scene);
+
+// One head light along the view and one key light from the upper left, both attached to the camera.
+[[nodiscard]] std::vector<Light> default_lights();
+
+}  // namespace ivory
