@@ -1,0 +1,49 @@
+// The compiled field: f(p) = sum of F_i(p) - T over the visible elements, as a structure of arrays.
+// F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/field/kernel.h, distances in core/field/skeleton.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/math/box3.h"
+#include "core/math/vec3.h"
+#include "core/scene/scene.h"
+
+namespace ivory {
+
+enum class Shape : std::uint8_t { point, segment, circle };
+
+// Visible elements only, sorted by shape (points, segments, circles), in file order within a shape.
+// The doubles are those of the scene, unchanged: every proof is about them.
+struct Field {
+    double threshold = 0;    // T
+    double least_width = 0;  // the least w_i; 1 where there is no element
+
+    std::vector<Shape> shape;
+    std::vector<KernelKind> kernel;
+    std::vector<double> strength;       // b_i
+    std::vector<double> width;          // w_i
+    std::vector<double> ax, ay, az;     // point: position; segment: a; circle: centre
+    std::vector<double> bx, by, bz;     // segment: b; circle: normal as written; point: unused
+    std::vector<double> radius;         // circle; otherwise 0
+    std::vector<Color> color;           // linear RGB
+    std::vector<std::uint32_t> source;  // index in Scene::elements
+    // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an interval:
+    // |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
+    std::vector<double> cut;
+
+    // The box around all balls d_i <= reach_i, and that box shrunk: all of {f >= 0} lies in either,
+    // proved. Empty: the surface is empty. mathematics: core/field/bounding_box.h
+    Box3 reach_box;
+    Box3 box;
+
+    [[nodiscard]] std::size_t size() const { return shape.size(); }
+    [[nodiscard]] Vec3d a(std::size_t i) const { return {ax[i], ay[i], az[i]}; }
+    [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
+};
+
+// Does not throw (but for memory); the scene has been validated by its reader.
+[[nodiscard]] Field compile(const Scene& scene);
+
+}  // namespace ivory

@@ -1,0 +1,37 @@
+// Where the field can matter: the elements that reach a bundle of rays, and what all others could add.
+// Skipping of elements, all of it proved: an upper bound of |F_i| over the bundle comes from the least
+// distance between skeleton and bundle.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/field/field.h"
+#include "core/interval/interval.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+// A sorted list of elements that stands for the whole field on some set of rays:
+// sum over the list + [rest.lo, rest.hi] encloses the sum of all F_i at every point of these rays.
+struct ElementList {
+    std::vector<std::uint32_t> elements;  // indices into Field, ascending
+    Interval<double> rest{0.0, 0.0};
+    bool certainly_empty = false;  // f < 0 on all these rays: every one of them is a miss
+};
+
+// All rays from `apex` whose direction makes an angle of at most asin(sine) with `axis`.
+struct Cone {
+    Vec3d apex;
+    Vec3d axis;       // any length but 0
+    double sine = 0;  // rounded up; > 1: every direction
+};
+
+[[nodiscard]] ElementList all_elements(const Field& field);
+
+// The elements of `parent` that matter on the cone's rays; the others move into `rest`.
+// `parent` has to be valid on these rays. The result depends on the arguments alone.
+[[nodiscard]] ElementList reaching_elements(const Field& field, const ElementList& parent,
+                                            const Cone& cone);
+
+}  // namespace ivory

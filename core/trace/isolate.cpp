@@ -1,0 +1,209 @@
+#include "core/trace/isolate.h"
+
+#include <cmath>
+
+namespace ivory {
+namespace {
+
+constexpr double u = unit_roundoff;
+
+// The first zero of a + b x + m x^2 / 2 in [0, width], for a < 0, rounded down; `width` where there is none.
+double parabola_step(double a, double b, double m, double width) {
+    if (!(m < infinity<double>) || !(b < infinity<double>)) return 0;
+    const double square = b * b - 2 * a * m;
+    if (b > 0) {
+        // -2 a / (b + root): a larger root only shortens the step. The roundings of b^2 - 2 a m are of its
+        // terms' size.
+        const double enlarged = square + 8 * u * (b * b + std::abs(a * m));
+        if (enlarged < 0) return width;
+        return std::min(-2 * a / (b + std::sqrt(enlarged)) * (1 - 16 * u), width);
+    }
+    if (m <= 0) return width;
+    // (root - b) / m: both terms of the square are positive, so that its relative error stays below 4 u.
+    return std::min((std::sqrt(square) - b) / m * (1 - 16 * u), width);
+}
+
+// The first zero of a + b x in [0, width], for a < 0, rounded down.
+double line_step(double a, double b, double width) {
+    if (b <= 0) return width;
+    if (!(b < infinity<double>)) return 0;
+    return std::min(-a / b * (1 - 8 * u), width);
+}
+
+Interval<double> oriented(const Interval<double>& f, bool inside) { return inside ? -f : f; }
+
+class Walk {
+  public:
+    Walk(const FieldAlongRay& field, const Interval<double>& span, const Precision& precision,
+         int budget, Counts& counts)
+        : field_(field), span_(span), precision_(precision), left_(budget), counts_(counts) {}
+
+    Isolation run(Start start) {
+        t_ = span_.lo;
+        if (start == Start::unknown && !find_side()) return unresolved(span_.hi);
+        double window = span_.hi - t_;
+        while (t_ < span_.hi) {
+            if (left_ <= 0) return unresolved(span_.hi);
+            const double end = std::min(std::max(t_ + window, next_up(t_)), span_.hi);
+            const Enclosure e = over(end);
+            if (e.value.hi < 0) {
+                t_ = end;
+                window *= 2;
+                continue;
+            }
+            if (e.left.hi < 0) {
+                const double width = sub_up(end, t_);
+                const double step =
+                    std::max(parabola_step(e.left.hi, e.left_slope.hi, e.curvature.hi, width),
+                              line_step(e.left.hi, e.slope.hi, width));
+                if (step >= width) {
+                    t_ = end;
+                    window = 2 * width;
+                    continue;
+                }
+                // The lower parabola crosses 0 no earlier than f does: where it does so at once, a root is
+                // close, and the next window only has to hold it.
+                const double latest =
+                    parabola_step(e.left.lo, e.left_slope.lo, e.curvature.lo, width);
+                const double cell = precision_.cell_at(t_);
+                t_ = std::max(t_, add_down(t_, step));
+                window = latest < width ? 1.25 * (latest - step) + cell : 2 * step + cell;
+                const bool near = latest < width && latest - step < cell;
+                if (!near && step > 0.25 * cell) continue;
+            }
+            // A root is near, or rounding hides the sign.
+            switch (const Isolation end_of_walk = close(); close_) {
+                case Close::found: return end_of_walk;
+                case Close::none_near: window = 4 * precision_.cell_at(t_); break;
+                case Close::doubtful: window = 4 * precision_.cell_at(t_); break;
+            }
+        }
+        if (inside_) return unresolved(span_.hi);  // f < 0 beyond the span: not reached but by rounding
+        if (doubt_.lo <= doubt_.hi) return {Status::unresolved, doubt_};
+        return {Status::miss, Interval<double>::empty_set()};
+    }
+
+  private:
+    enum class Close : unsigned char { found, none_near, doubtful };
+
+    Enclosure over(double end) {
+        --left_;
+        ++counts_.evaluations;
+        counts_.element_evaluations += field_.size();
+        Enclosure e = field_.over(t_, end);
+        if (inside_) {
+            e = {-e.left, -e.right, -e.value, -e.left_slope, -e.slope, -e.curvature};
+        }
+        return e;
+    }
+
+    // f(t) with the sign that makes it negative before the first root. f < 0 beyond the span.
+    Interval<double> at(double t) {
+        if (t >= span_.hi) {
+            return oriented({-infinity<double>, -smallest<double>}, inside_);
+        }
+        --left_;
+        ++counts_.evaluations;
+        counts_.element_evaluations += field_.size();
+        return oriented(field_.at(std::max(t, span_.lo)), inside_);
+    }
+
+    // The side on which the ray starts. Where rounding hides it, the start up to the first place with a
+    // certain sign is in doubt: the first root may lie there.
+    bool find_side() {
+        const double cell = precision_.cell_at(t_);
+        for (double ahead = 0; t_ + ahead < span_.hi && left_ > 0;
+             ahead = ahead == 0 ? cell : 2 * ahead) {
+            const Interval<double> f = at(t_ + ahead);
+            if (!(f.lo > 0) && !(f.hi < 0)) continue;
+            inside_ = f.lo > 0;
+            if (ahead > 0) doubt_ = {t_, t_ + ahead};
+            t_ += ahead;
+            return true;
+        }
+        return false;
+    }
+
+    Isolation unresolved(double end) const {
+        return {Status::unresolved, {std::min(t_, doubt_.lo), end}};
+    }
+
+    // A root in [t_, hi] is certain. Earlier doubts make it the last place where the first root can be.
+    Isolation found(double lo, double hi) {
+        close_ = Close::found;
+        if (is_empty(doubt_)) return {Status::hit, {std::max(lo, 0.0), hi}};
+        return {Status::unresolved, {doubt_.lo, hi}};
+    }
+
+    // Ends the walk on the grid if it can: [t_, hi] holds a root where f changes its sign between them, and
+    // [0, t_) holds none. Where f keeps its sign at the next grid line the walk goes on; where rounding
+    // hides signs on and on, up to the first place with a certain one.
+    Isolation close() {
+        const double cell = precision_.cell_at(t_);
+        const double line = std::floor(t_ / cell) * cell;
+        double lo = line;
+        if (lo > span_.lo && !(at(lo).hi < 0)) lo -= cell;
+        bool hidden = false;
+        double ahead = cell;
+        while (left_ > 0) {
+            const double hi = line + ahead;
+            const Interval<double> g = at(hi);
+            if (g.lo > 0) return found(lo, hi);
+            if (g.hi < 0) return nothing_certain(lo, hi, hidden);
+            hidden = true;
+            if (hi >= span_.hi) break;
+            ahead = ahead < 4 * cell ? ahead + cell : 2 * ahead;
+        }
+        close_ = Close::found;
+        return unresolved(span_.hi);
+    }
+
+    // f has its old sign at hi again. Between t_ and hi it may have touched 0, or passed it twice. Where f keeps
+    // its sign at t_ too, the walk tries smaller windows first, once in a cell.
+    Isolation nothing_certain(double lo, double hi, bool hidden) {
+        if (!hidden && t_ > last_none_ + 0.5 * (hi - lo) && at(t_).hi < 0) {
+            last_none_ = t_;
+            close_ = Close::none_near;
+            return {};
+        }
+        // The top of the parabola through what is known at t_, then ever closer to t_.
+        const Enclosure e = over(hi);
+        const double top = -midpoint(e.left_slope) / midpoint(e.curvature);
+        double ahead = top > 0 && t_ + top < hi ? top : 0.5 * (hi - t_);
+        for (int i = 0; i < 24 && left_ > 0 && t_ + ahead > t_; ++i, ahead *= 0.5) {
+            if (at(t_ + ahead).lo > 0) return found(lo, hi);
+        }
+        doubt_ = hull(doubt_, Interval<double>(t_, hi));
+        t_ = hi;
+        close_ = Close::doubtful;
+        return {};
+    }
+
+    const FieldAlongRay& field_;
+    const Interval<double> span_;
+    const Precision precision_;
+    int left_;
+    Counts& counts_;
+    double t_ = 0;         // f has no root on [0, t_) outside of doubt_, and the sign of its side there
+    bool inside_ = false;  // f > 0 there
+    double last_none_ = -infinity<double>;
+    Interval<double> doubt_ = Interval<double>::empty_set();  // may hold the first root
+    Close close_ = Close::found;
+};
+
+}  // namespace
+
+double Precision::cell_at(double t) const {
+    // 8 ulp(t) = 2^(exponent - 50) for t in [2^(exponent - 1), 2^exponent).
+    if (t == 0) return cell;
+    int exponent = 0;
+    std::frexp(t, &exponent);
+    return std::max(cell, std::ldexp(1.0, exponent - 50));
+}
+
+Isolation isolate_first_root(const FieldAlongRay& field, const Interval<double>& span, Start start,
+                             const Precision& precision, int budget, Counts& counts) {
+    return Walk(field, span, precision, budget, counts).run(start);
+}
+
+}  // namespace ivory

@@ -1,0 +1,42 @@
+#include "core/trace/methods/method.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/field/surface.h"
+#include "core/trace/methods/bisection.h"
+#include "core/trace/methods/proved.h"
+
+namespace ivory {
+
+SurfacePoint Method::surface(const Field& field, const ElementList& list, const Ray& ray, double m,
+                             const MethodOptions&) const {
+    const FieldSample at = sample(field, list, ray.origin, ray.direction, m);
+    return {outward_normal(at.gradient), at.color};
+}
+
+Vec3d outward_normal(const Vec3d& gradient) {
+    // Scaled first, so that no square over- or underflows.
+    const double largest =
+        std::fmax(std::abs(gradient.x), std::fmax(std::abs(gradient.y), std::abs(gradient.z)));
+    if (!(largest > 0) || !(largest < infinity<double>)) return {};
+    const Vec3d g{gradient.x / largest, gradient.y / largest, gradient.z / largest};
+    const double length = std::sqrt(dot(g, g));
+    return {-g.x / length, -g.y / length, -g.z / length};
+}
+
+std::span<const Method* const> methods() {
+    static const Proved proved;
+    static const Bisection bisection;
+    static const std::array<const Method*, 2> all{&proved, &bisection};
+    return all;
+}
+
+const Method* find_method(std::string_view name) {
+    for (const Method* method : methods()) {
+        if (method->name() == name) return method;
+    }
+    return nullptr;
+}
+
+}  // namespace ivory

@@ -1,0 +1,51 @@
+// The ways to intersect a ray, behind one interface; each stands in a small file of its own.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/field/field.h"
+#include "core/field/support.h"
+#include "core/trace/ray.h"
+
+namespace ivory {
+
+struct MethodOptions {
+    double tolerance = 1e-9;         // E, 1e-15 .. 0.1: widths in units of the nearest element's width
+    double difference_delta = 1e-5;  // central differences of the paper's normal, in units of the least width
+};
+
+class Method {
+  public:
+    virtual ~Method() = default;
+    Method(const Method&) = delete;
+    Method& operator=(const Method&) = delete;
+
+    [[nodiscard]] virtual std::string_view name() const = 0;
+    // One line for `ivory info --methods`: what its answers prove.
+    [[nodiscard]] virtual std::string_view proves() const = 0;
+
+    // The first root on the ray. `list` has to be valid on this ray. Thread-safe, does not throw.
+    [[nodiscard]] virtual Isolation isolate(const Field& field, const ElementList& list,
+                                            const Ray& ray, const MethodOptions& options,
+                                            Counts& counts) const = 0;
+
+    // Normal and colour at p(m). By default those of core/field/surface.h, analytic.
+    [[nodiscard]] virtual SurfacePoint surface(const Field& field, const ElementList& list,
+                                               const Ray& ray, double m,
+                                               const MethodOptions& options) const;
+
+  protected:
+    Method() = default;
+};
+
+// -gradient / |gradient|; 0, 0, 0 for a gradient that is 0 or not finite.
+[[nodiscard]] Vec3d outward_normal(const Vec3d& gradient);
+
+// All methods, `proved` first. The pointers live as long as the program.
+[[nodiscard]] std::span<const Method* const> methods();
+
+// nullptr where there is none of that name.
+[[nodiscard]] const Method* find_method(std::string_view name);
+
+}  // namespace ivory

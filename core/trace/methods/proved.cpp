@@ -1,0 +1,68 @@
+#include "core/trace/methods/proved.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/field/inclusion.h"
+#include "core/field/surface.h"
+#include "core/trace/clip.h"
+#include "core/trace/isolate.h"
+
+namespace ivory {
+namespace {
+
+// Enough for a ray that grazes many elements; one that needs more says `unresolved`.
+constexpr int evaluation_budget = 4000;
+
+// The greatest power of two <= x.
+double power_of_two_below(double x) {
+    int exponent = 0;
+    std::frexp(x, &exponent);
+    return std::ldexp(1.0, exponent - 1);
+}
+
+}  // namespace
+
+Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
+                          const MethodOptions& options, Counts& counts) const {
+    const Isolation miss{Status::miss, Interval<double>::empty_set()};
+    if (list.certainly_empty) return miss;
+
+    // 1. The ray, scaled, as far as it is in the bounding box.
+    const ScaledRay scaled_ray = scaled(ray);
+    const Interval<double> span = clip(scaled_ray, field.box);
+    if (is_empty(span)) return miss;
+    if (!(span.hi < 1e100)) return {Status::unresolved, {0.0, infinity<double>}};
+
+    // 2. The field along it. A miss already where the peaks do not add up to T.
+    thread_local FieldAlongRay along;
+    along.build(field, list, scaled_ray.origin, scaled_ray.direction, span);
+    ++counts.evaluations;
+    counts.element_evaluations += list.elements.size();
+    if (along.certainly_outside()) return miss;
+
+    // 3. The first root.
+    const double speed = std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
+    const auto tolerance = [&](double width) {
+        return options.tolerance * width / speed * (1 - 8 * unit_roundoff);
+    };
+    // A coarser grid would save at most one step of the walk, and hide bumps that are thinner than a cell.
+    const double finest_needed = std::min(options.tolerance, 0x1p-20) / options.tolerance;
+    const Precision precision{
+        power_of_two_below(0.5 * finest_needed * tolerance(field.least_width))};
+    Isolation isolation =
+        isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,
+                           evaluation_budget, counts);
+
+    // 4. Two cells are always narrow enough. A wider bracket is judged by the element that matters there.
+    const double width = sub_up(isolation.t.hi, isolation.t.lo);
+    if (isolation.status == Status::hit && width > 2 * precision.cell_at(isolation.t.hi)) {
+        const FieldSample middle = sample(field, list, scaled_ray.origin, scaled_ray.direction,
+                                          midpoint(isolation.t));
+        if (!(width <= tolerance(field.width[middle.strongest]))) isolation.status = Status::unresolved;
+    }
+    isolation.t = scaled_ray.unscaled(isolation.t);
+    return isolation;
+}
+
+}  // namespace ivory

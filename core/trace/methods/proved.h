@@ -1,0 +1,19 @@
+// Ivory's own method: safe steps on tight inclusion functions, a proved sign change at the end.
+// Claims are of exact arithmetic on the doubles of scene and ray. See core/trace/isolate.h.
+#pragma once
+
+#include "core/trace/methods/method.h"
+
+namespace ivory {
+
+class Proved final : public Method {
+  public:
+    [[nodiscard]] std::string_view name() const override { return "proved"; }
+    [[nodiscard]] std::string_view proves() const override {
+        return "hit: a root in the interval and none before it; miss: no root at all";
+    }
+    [[nodiscard]] Isolation isolate(const Field& field, const ElementList& list, const Ray& ray,
+                                    const MethodOptions& options, Counts& counts) const override;
+};
+
+}  // namespace ivory

@@ -1,0 +1,53 @@
+// A ray, and what can be said of its first meeting with the surface.
+#pragma once
+
+#include <cstdint>
+
+#include "core/interval/interval.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+// p(t) = origin + t direction for t >= 0; the direction is not normalised, t is in units of |direction|.
+struct Ray {
+    Vec3d origin;
+    Vec3d direction;
+};
+
+enum class Status : std::uint8_t {
+    hit,           // t holds a root of f(p(t)), and f has none on [0, t.lo): proved
+    miss,          // f has no root on [0, inf): proved
+    unresolved,    // the first root, if there is one, lies in t
+    claimed_hit,   // by a method that proves nothing of the kind
+    claimed_miss,  // likewise
+};
+
+struct Isolation {
+    Status status = Status::unresolved;
+    Interval<double> t{};  // in units of |direction|; empty on a miss and a claimed miss
+};
+
+// What the surface is like at p(m), m the midpoint of the isolated interval.
+struct SurfacePoint {
+    Vec3d normal;  // -grad f / |grad f|; 0, 0, 0 where the gradient is 0 or undefined
+    Vec3d color;   // sum of color_i max(F_i, 0) / sum of max(F_i, 0), linear; 0 where no F_i > 0
+};
+
+struct Answer {
+    Isolation isolation;
+    SurfacePoint surface;
+};
+
+// Work done, for statistics. Added up per thread.
+struct Counts {
+    std::uint64_t evaluations = 0;          // pairs of a ray and an interval that were enclosed
+    std::uint64_t element_evaluations = 0;  // elements enclosed in them
+
+    Counts& operator+=(const Counts& other) {
+        evaluations += other.evaluations;
+        element_evaluations += other.element_evaluations;
+        return *this;
+    }
+};
+
+}  // namespace ivory

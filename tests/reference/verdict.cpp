@@ -1,0 +1,283 @@
+#include "tests/reference/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ivory::reference {
+
+namespace {
+
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
+
+Real magnitude(const RealInterval& x) {
+    const Real lo = rounded(mpfr_abs, MPFR_RNDU, x.lo), hi = rounded(mpfr_abs, MPFR_RNDU, x.hi);
+    return lo < hi ? hi : lo;
+}
+
+Real middle_of(const Interval<double>& t) {
+    return scaled(rounded(mpfr_add, MPFR_RNDN, Real(t.lo), Real(t.hi)), -1);  // exact
+}
+
+// The width of the element with the greatest |F_i|: the greater one where two are alike.
+double leading_width(const ReferenceField& field, const PointValue& point) {
+    Real greatest(0.0);
+    for (const RealInterval& value : point.element) {
+        const RealInterval size = sqrt(sqr(value));
+        if (greatest < size.lo) greatest = size.lo;
+    }
+    double width = 0;
+    for (std::size_t i = 0; i < point.element.size(); ++i) {
+        if (magnitude(point.element[i]) >= greatest) {
+            width = std::max(width, field.elements()[i].width);
+        }
+    }
+    return width;
+}
+
+// t_hi - t_lo > max(E w / |d|, 16 ulp(t_hi)) for certain.
+bool certainly_too_wide(const Interval<double>& t, double tolerance, double w, const Ray& ray) {
+    const RealInterval width = RealInterval(t.hi) - RealInterval(t.lo);
+    const RealInterval d = sqrt(norm2(triple<RealInterval>(ray.direction)));
+    const RealInterval allowed = RealInterval(tolerance) * RealInterval(w) / d;
+    const double ulp = std::nextafter(t.hi, std::numeric_limits<double>::infinity()) - t.hi;
+    return width.lo > allowed.hi && width.lo > Real(16 * ulp);
+}
+
+// No root on [0, t.lo), and one on t: true, false, or nothing where that cannot be told.
+std::optional<bool> holds_first_root(const ReferenceField& field, const Ray& ray,
+                                     const Interval<double>& t, const ReferenceAnswer& reference) {
+    const Real lo(t.lo), hi(t.hi);
+    const RealInterval& root = reference.t;
+    if (reference.outcome == Outcome::miss) return false;
+    if (root.lo > hi) return false;
+    if (reference.outcome == Outcome::hit) {
+        if (root.hi < lo) return false;
+        if (root.lo >= lo && root.hi <= hi) return true;
+    }
+    const RealInterval first = field.along(ray, RealInterval(lo)).value;
+    const RealInterval last = field.along(ray, RealInterval(hi)).value;
+    const auto exactly_zero = [](const RealInterval& x) {
+        return x.lo.is_zero() && x.hi.is_zero();
+    };
+    const bool holds_one = exactly_zero(first) || exactly_zero(last) ||
+                           (certainly_positive(first) && certainly_negative(last)) ||
+                           (certainly_negative(first) && certainly_positive(last));
+    // The reference's root, the first one, is at most at root.hi: an exact root at t_lo within
+    // root is that one.
+    const bool none_before = root.lo >= lo || (reference.outcome == Outcome::hit &&
+                                               exactly_zero(first) && root.hi >= lo);
+    if (holds_one && none_before) return true;
+    return std::nullopt;
+}
+
+bool near_axis(const Element& element, const Ray& ray, const Real& t) {
+    const auto* circle = std::get_if<CircleSkeleton>(&element.skeleton);
+    if (circle == nullptr || circle->radius == 0) return false;
+    const auto n = ElementAlongRay<RealInterval>::unit_normal(circle->normal);
+    auto u = minus(triple<RealInterval>(ray.origin), triple<RealInterval>(circle->center));
+    const auto d = triple<RealInterval>(ray.direction);
+    for (std::size_t k = 0; k < 3; ++k) u[k] = u[k] + RealInterval(t) * d[k];
+    return sqrt(norm2(outer(n, u))).lo.to_double() < 1e-6 * element.width;
+}
+
+double norm(const Triple<RealInterval>& v) { return sqrt(norm2(v)).hi.to_double(MPFR_RNDU); }
+
+double normal_error(const ReferenceField& field, const Ray& ray, const Real& m,
+                    const PointValue& point, double w, const Vec3d& normal) {
+    const RealInterval steepness = sqrt(norm2(point.gradient));
+    double rises = 0;
+    for (const auto& rise : point.rise) rises += norm(rise);
+    const double least = std::max(1e-4 * rises, 1e-6 * field.threshold() / w);
+    if (!(steepness.lo.to_double() >= least)) return Verdict::nothing;
+    for (std::size_t i = 0; i < point.rise.size(); ++i) {
+        if (norm(point.rise[i]) > 1e-9 * rises && near_axis(field.elements()[i], ray, m)) {
+            return Verdict::nothing;
+        }
+    }
+    Triple<RealInterval> difference;
+    for (std::size_t k = 0; k < 3; ++k) {
+        difference[k] = RealInterval(normal[k]) + point.gradient[k] / steepness;
+    }
+    return norm(difference);
+}
+
+double color_error(const ReferenceField& field, const PointValue& point, const Color& color) {
+    double positive = 0;
+    for (const RealInterval& value : point.element) positive += std::max(0.0, value.lo.to_double());
+    if (positive < field.threshold() / 2) return Verdict::nothing;
+    double error = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Real difference = magnitude(RealInterval(color[k]) - point.color[k]);
+        error = std::max(error, difference.to_double(MPFR_RNDU));
+    }
+    return error;
+}
+
+// The element nearest to the ray at t, or, without t, to the whole ray, found by a rough search:
+// this only sorts rays, it proves nothing.
+struct Nearest {
+    double size = 0;   // L
+    double width = 1;  // w
+};
+
+Vec3d skeleton_point(const Skeleton& skeleton) {
+    if (const auto* point = std::get_if<PointSkeleton>(&skeleton)) return point->position;
+    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) return segment->a;
+    return std::get<CircleSkeleton>(skeleton).center;
+}
+
+double distance(const Skeleton& skeleton, const Vec3d& p) {
+    const Vec3d from = skeleton_point(skeleton);
+    const Vec3d u{p.x - from.x, p.y - from.y, p.z - from.z};
+    const auto product = [](const Vec3d& a, const Vec3d& b) {
+        return a.x * b.x + a.y * b.y + a.z * b.z;
+    };
+    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) {
+        const Vec3d m{segment->b.x - from.x, segment->b.y - from.y, segment->b.z - from.z};
+        const double m2 = product(m, m);
+        const double foot = m2 > 0 ? std::clamp(product(u, m) / m2, 0.0, 1.0) : 0;
+        return length({u.x - foot * m.x, u.y - foot * m.y, u.z - foot * m.z});
+    }
+    if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
+        const double h = product(u, circle->normal) / length(circle->normal);
+        const double rho = std::sqrt(std::max(0.0, product(u, u) - h * h));
+        return std::hypot(rho - circle->radius, h);
+    }
+    return length(u);
+}
+
+Nearest nearest(const ReferenceField& field, const Ray& ray, const ReferenceAnswer& known) {
+    const auto at = [&](double t) {
+        return Vec3d{std::fma(t, ray.direction.x, ray.origin.x),
+                     std::fma(t, ray.direction.y, ray.origin.y),
+                     std::fma(t, ray.direction.z, ray.origin.z)};
+    };
+    const double d = length(ray.direction);
+    double least = std::numeric_limits<double>::infinity();
+    Nearest result;
+    for (const Element& element : field.elements()) {
+        const Vec3d c = skeleton_point(element.skeleton);
+        const Vec3d from{ray.origin.x - c.x, ray.origin.y - c.y, ray.origin.z - c.z};
+        double own = std::numeric_limits<double>::infinity();
+        if (known.outcome == Outcome::hit) {
+            own = distance(element.skeleton, at(known.t.lo.to_double()));
+        } else {
+            const double foot = -(from.x * (ray.direction.x / d) + from.y * (ray.direction.y / d) +
+                                  from.z * (ray.direction.z / d));
+            double reach = 0;
+            if (const auto* s = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+                reach = length({s->b.x - s->a.x, s->b.y - s->a.y, s->b.z - s->a.z});
+            } else if (const auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
+                reach = circle->radius;
+            }
+            for (int step = -16; step <= 16; ++step) {
+                const double along = std::max(0.0, foot + reach * step / 16.0);
+                own = std::min(own, distance(element.skeleton, at(along / d)));
+            }
+        }
+        if (own < least) {
+            least = own;
+            result = {std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(from.z)}),
+                      element.width};
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+const char* word(Fault fault) {
+    switch (fault) {
+        case Fault::none:
+            return "right";
+        case Fault::malformed:
+            return "malformed";
+        case Fault::wrong_hit:
+            return "wrong hit";
+        case Fault::wrong_miss:
+            return "wrong miss";
+        case Fault::wrong_bracket:
+            return "wrong bracket";
+        case Fault::too_wide:
+            return "too wide";
+        case Fault::false_claim:
+            return "false claim";
+    }
+    return "";
+}
+
+Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, const Answer& answer) {
+    Verdict verdict;
+    const Status status = answer.isolation.status;
+    const Interval<double>& t = answer.isolation.t;
+    const bool has_bracket =
+        status == Status::hit || status == Status::unresolved || status == Status::claimed_hit;
+    if (has_bracket && !(0 <= t.lo && t.lo <= t.hi && std::isfinite(t.hi))) {
+        verdict.fault = Fault::malformed;
+        return verdict;
+    }
+    verdict.reference = first_root(field, ray);
+    const ReferenceAnswer& reference = verdict.reference;
+    const bool unknown = reference.outcome == Outcome::unknown;
+
+    if (!has_bracket) {
+        verdict.undecided = unknown;
+        if (reference.outcome == Outcome::hit) {
+            verdict.fault = status == Status::miss ? Fault::wrong_miss : Fault::false_claim;
+        }
+        return verdict;
+    }
+
+    const Real m = middle_of(t);
+    const PointValue point = field.at(ray, m);
+    const double w = leading_width(field, point);
+    const RealInterval d = sqrt(norm2(triple<RealInterval>(ray.direction)));
+    const RealInterval span = (RealInterval(t.hi) - RealInterval(t.lo)) * d;
+    if (w > 0) {
+        verdict.bracket = (span / RealInterval(w)).hi.to_double();
+        verdict.normal_error = normal_error(field, ray, m, point, w, answer.surface.normal);
+        verdict.color_error = color_error(field, point, answer.surface.color);
+    }
+    if (reference.outcome == Outcome::hit) {
+        verdict.root_error = magnitude((RealInterval(m) - reference.t) * d).to_double();
+    }
+
+    if (status == Status::hit) {
+        const std::optional<bool> right = holds_first_root(field, ray, t, reference);
+        verdict.undecided = !right;
+        if (right == false) {
+            verdict.fault = Fault::wrong_hit;
+        } else if (certainly_too_wide(t, tolerance, w, ray)) {
+            verdict.fault = Fault::too_wide;
+        }
+    } else if (status == Status::claimed_hit) {
+        verdict.undecided = unknown;
+        if (reference.outcome == Outcome::miss) verdict.fault = Fault::false_claim;
+    } else {
+        verdict.undecided = unknown;
+        if (reference.outcome == Outcome::hit &&
+            (reference.t.hi < Real(t.lo) || reference.t.lo > Real(t.hi))) {
+            verdict.fault = Fault::wrong_bracket;
+        }
+    }
+    return verdict;
+}
+
+bool decidable(const ReferenceField& field, const Ray& ray, double tolerance,
+               const ReferenceAnswer& known) {
+    if (known.outcome == Outcome::unknown) return false;
+    const Nearest near = nearest(field, ray, known);
+    const double shift = 1e-11 * std::max(1.0, near.size / near.width);
+    if (!(shift < 0.5)) return false;
+    const ReferenceAnswer lower = first_root(field, ray, 1 - shift);
+    const ReferenceAnswer upper = first_root(field, ray, 1 + shift);
+    if (lower.outcome != known.outcome || upper.outcome != known.outcome) return false;
+    if (known.outcome == Outcome::miss) return true;
+    const RealInterval d = sqrt(norm2(triple<RealInterval>(ray.direction)));
+    const RealInterval allowed = RealInterval(tolerance) * RealInterval(near.width) / d;
+    return magnitude(lower.t - upper.t) <= allowed.lo &&
+           magnitude(lower.t - known.t) <= allowed.lo && magnitude(upper.t - known.t) <= allowed.lo;
+}
+
+}  // namespace ivory::reference

@@ -1,0 +1,49 @@
+// What the contract promises of an answer, checked against the reference.
+#pragma once
+
+#include <limits>
+
+#include "core/trace/ray.h"
+#include "tests/reference/reference.h"
+
+namespace ivory::reference {
+
+enum class Fault {
+    none,
+    malformed,      // not 0 <= t_lo <= t_hi < infinity
+    wrong_hit,      // no root in [t_lo, t_hi], or one before
+    wrong_miss,     // there is a root
+    wrong_bracket,  // unresolved, and the first root is elsewhere
+    too_wide,       // a hit with t_hi - t_lo > max(E w / |d|, 16 ulp(t_hi))
+    false_claim,    // claimed_hit where there is no root, claimed_miss where there is one
+};
+
+[[nodiscard]] const char* word(Fault fault);
+
+struct Verdict {
+    static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+    Fault fault = Fault::none;
+    bool undecided = false;  // 256 bits do not suffice to judge this answer
+    ReferenceAnswer reference;
+    double normal_error = nothing;  // |n - exact n| at m; NaN where not to be judged
+    double color_error = nothing;   // greatest of the three differences at m; likewise
+    double root_error = nothing;    // |m - root| |d|, a length, where both know a root
+    double bracket = nothing;       // (t_hi - t_lo) |d| / w, w as for the tolerance
+};
+
+// Normal and colour are judged for whatever has a bracket, at m = (t_lo + t_hi) / 2 exactly. The
+// normal is not judged where the gradient is near zero or undefined: |grad f| below 1e-4 of the sum
+// of |grad F_i|, or below 1e-6 T / w, or within 1e-6 w of the axis of a circle that adds to it. The
+// colour is judged where the positive F_i sum to T / 2 or more.
+[[nodiscard]] Verdict check(const ReferenceField& field, const Ray& ray, double tolerance,
+                            const Answer& answer);
+
+// For the thresholds T (1 +- 1e-11 max(1, L / w)) the reference gives the same outcome, hit or
+// miss, and first roots within E w / |d|. L is the largest absolute coordinate of origin - skeleton
+// point (position, a, or center) of the element that is nearest, by distance, to the hit, or for a
+// ray without one to the ray; w is the width of that element. `known` is first_root(field, ray).
+[[nodiscard]] bool decidable(const ReferenceField& field, const Ray& ray, double tolerance,
+                             const ReferenceAnswer& known);
+
+}  // namespace ivory::reference

@@ -1,0 +1,38 @@
+// make_scene: a seeded random scene, on standard output.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "core/scene/scene_json.h"
+#include "tests/tools/random_scene.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+    ivory::tools::SceneRecipe recipe;
+    std::uint64_t seed = 1;
+    CLI::App app("A random scene: all shapes, kernels and signs of strength.", "make_scene");
+    app.add_option("--seed", seed, "same seed, same scene");
+    app.add_option("--elements", recipe.elements, "how many");
+    app.add_option("--scale", recipe.scale, "of all lengths");
+    app.add_option("--shift", recipe.shift, "added to all coordinates, after the scale");
+    app.add_flag("--critical", recipe.critical, "threshold next to a critical value of the field");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    std::fputs(ivory::write_scene(ivory::tools::random_scene(recipe, seed)).c_str(), stdout);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "make_scene: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,278 @@
+#include "tests/tools/nasty_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "tests/reference/reference.h"
+#include "tests/tools/random_scene.h"
+
+namespace ivory::tools {
+
+namespace {
+
+// a + x b, rounded as it comes.
+Vec3d plus(const Vec3d& a, double x, const Vec3d& b) {
+    return {a.x + x * b.x, a.y + x * b.y, a.z + x * b.z};
+}
+
+Vec3d from_to(const Vec3d& a, const Vec3d& b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
+
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
+
+Vec3d times(double x, const Vec3d& v) { return {x * v.x, x * v.y, x * v.z}; }
+
+// Some vector at a right angle to v, 1 long.
+Vec3d beside(const Vec3d& v) {
+    const Vec3d a = std::fabs(v.x) < 0.5 * length(v) ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d n{a.y * v.z - a.z * v.y, a.z * v.x - a.x * v.z, a.x * v.y - a.y * v.x};
+    return times(1 / length(n), n);
+}
+
+class Maker {
+  public:
+    Maker(const Scene& scene, std::uint64_t seed) : field_(scene), random_(seed) {
+        const double infinity = std::numeric_limits<double>::infinity();
+        Vec3d lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
+        for (const Element& element : field_.elements()) {
+            for (const Vec3d& p : marks(element)) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    lo[k] = std::min(lo[k], p[k] - 1.5 * element.width);
+                    hi[k] = std::max(hi[k], p[k] + 1.5 * element.width);
+                }
+            }
+        }
+        if (field_.elements().empty()) lo = {-1, -1, -1}, hi = {1, 1, 1};
+        center_ = plus(times(0.5, lo), 0.5, hi);
+        size_ = 0.5 * length(from_to(lo, hi));
+    }
+
+    std::vector<Ray> make(RayKind kind, std::size_t count) {
+        // A kind may find nothing, in a scene without a surface for example.
+        for (std::size_t tries = 0; rays_.size() < count && tries < 4 * count; ++tries) {
+            switch (kind) {
+                case RayKind::random:
+                    rays_.push_back(random_ray());
+                    break;
+                case RayKind::tangent:
+                    tangent();
+                    break;
+                case RayKind::axis:
+                    axis();
+                    break;
+                case RayKind::segment:
+                    segment();
+                    break;
+                case RayKind::inside:
+                    inside();
+                    break;
+                case RayKind::scaled:
+                    scaled();
+                    break;
+                case RayKind::parallel:
+                    parallel();
+                    break;
+                case RayKind::surface:
+                    surface();
+                    break;
+                case RayKind::far:
+                    far();
+                    break;
+            }
+        }
+        if (rays_.size() > count) rays_.resize(count);
+        return std::move(rays_);
+    }
+
+  private:
+    // Points of the skeleton that span it.
+    static std::vector<Vec3d> marks(const Element& element) {
+        if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
+            return {point->position};
+        }
+        if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+            return {segment->a, segment->b};
+        }
+        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
+        const Vec3d u = beside(circle.normal);
+        const Vec3d& n = circle.normal;
+        const Vec3d cross{n.y * u.z - n.z * u.y, n.z * u.x - n.x * u.z, n.x * u.y - n.y * u.x};
+        const Vec3d v = times(1 / length(n), cross);
+        const double r = circle.radius;
+        return {plus(circle.center, r, u), plus(circle.center, -r, u), plus(circle.center, r, v),
+                plus(circle.center, -r, v)};
+    }
+
+    template <class Shape>
+    const Shape* some_shape() {
+        std::vector<const Shape*> shapes;
+        for (const Element& element : field_.elements()) {
+            if (const auto* shape = std::get_if<Shape>(&element.skeleton)) shapes.push_back(shape);
+        }
+        return shapes.empty() ? nullptr : shapes[random_.below(shapes.size())];
+    }
+
+    Vec3d some_direction() {
+        for (;;) {
+            const Vec3d v = random_.in_cube(1);
+            const double l = length(v);
+            if (l > 0.1 && l < 1) return times(1 / l, v);
+        }
+    }
+    // Somewhere near the skeleton.
+    Vec3d target() {
+        if (field_.elements().empty() || random_.chance(0.2)) {
+            return plus(center_, size_ * 0.6, random_.in_cube(1));
+        }
+        const Element& element = field_.elements()[random_.below(field_.elements().size())];
+        const std::vector<Vec3d> points = marks(element);
+        return plus(points[random_.below(points.size())], element.width, random_.in_cube(1.2));
+    }
+    Vec3d viewpoint() { return plus(center_, size_ * random_.uniform(1.2, 4), some_direction()); }
+    Ray random_ray() {
+        const Vec3d o = viewpoint(), d = from_to(o, target());
+        return {o, random_.chance(0.5) ? times(1 / length(d), d) : d};
+    }
+    bool hits(const Ray& ray) { return first_root(field_, ray).outcome == reference::Outcome::hit; }
+
+    // Between a ray that hits and one that misses lies one that just touches.
+    void tangent() {
+        const Ray a = random_ray();
+        Ray b = random_ray();
+        if (random_.chance(0.5)) {
+            b.origin = a.origin;
+            b.direction = from_to(a.origin, target());
+        }
+        if (hits(a) == hits(b)) return;
+        const auto between = [&](double x) {
+            return Ray{plus(a.origin, x, from_to(a.origin, b.origin)),
+                       plus(a.direction, x, from_to(a.direction, b.direction))};
+        };
+        double lo = 0, hi = 1;
+        const bool start_hits = hits(a);
+        for (;;) {
+            const double middle = lo + (hi - lo) / 2;
+            if (middle <= lo || middle >= hi) break;
+            (hits(between(middle)) == start_hits ? lo : hi) = middle;
+        }
+        rays_.push_back(between(lo));
+        rays_.push_back(between(hi));
+        for (int power = 4; power <= 15; ++power) {
+            const double off = std::pow(10, -power) * random_.uniform(0.5, 2);
+            rays_.push_back(between(lo - off));
+            rays_.push_back(between(hi + off));
+        }
+    }
+
+    void axis() {
+        const auto* circle = some_shape<CircleSkeleton>();
+        if (circle == nullptr) return;
+        const double scale = std::max(circle->radius, 0x1p-10 * size_);
+        const Vec3d n = circle->normal, side = beside(n);
+        const double back = random_.sign() * std::ceil(random_.uniform(1, 4) * size_ / length(n));
+        const Vec3d o = plus(circle->center, back, n), d = times(back > 0 ? -1 : 1, n);
+        rays_.push_back({o, d});
+        for (const double off : {1e-3, 1e-8, 1e-14}) {
+            rays_.push_back({plus(o, off * scale, side), d});
+            rays_.push_back({o, plus(d, off * length(d), side)});
+        }
+        rays_.push_back({circle->center, d});     // from the centre
+        rays_.push_back({circle->center, side});  // from the centre to the circle
+        const Vec3d across = plus(circle->center, -4 * size_, side);
+        rays_.push_back({across, side});
+        rays_.push_back({plus(across, 1e-8 * scale, n), side});
+        const Vec3d oblique = plus(side, random_.uniform(-1, 1), some_direction());
+        rays_.push_back({plus(circle->center, -4 * size_, oblique), oblique});
+    }
+
+    void segment() {
+        const auto* shape = some_shape<SegmentSkeleton>();
+        if (shape == nullptr || random_.chance(0.2)) {  // through a point of some skeleton
+            if (field_.elements().empty()) return;
+            const auto points = marks(field_.elements()[random_.below(field_.elements().size())]);
+            const Vec3d o = viewpoint();
+            rays_.push_back({o, from_to(o, points[0])});
+            return;
+        }
+        const Vec3d along = shape->a == shape->b ? some_direction() : from_to(shape->a, shape->b);
+        const double back = std::ceil(random_.uniform(1, 4) * size_ / length(along));
+        const Vec3d o = plus(shape->a, -back, along), side = beside(along);
+        rays_.push_back({o, along});
+        rays_.push_back({shape->a, along});
+        rays_.push_back({plus(shape->b, back, along), times(-1, along)});
+        for (const double off : {1e-3, 1e-8, 1e-14}) {
+            rays_.push_back({plus(o, off * size_, side), along});
+            rays_.push_back({o, plus(along, off * length(along), side)});
+        }
+        for (const Vec3d& end : {shape->a, shape->b}) {
+            const Vec3d from = viewpoint();
+            rays_.push_back({from, from_to(from, end)});
+            rays_.push_back({plus(end, -4 * size_, side), side});
+            rays_.push_back({end, some_direction()});
+        }
+    }
+
+    void inside() {
+        if (field_.elements().empty()) return;
+        const Element& element = field_.elements()[random_.below(field_.elements().size())];
+        if (element.strength < 0) return;
+        const auto points = marks(element);
+        const Vec3d o = plus(points[random_.below(points.size())],
+                             random_.chance(0.3) ? 0 : 0.3 * element.width, random_.in_cube(1));
+        rays_.push_back({o, some_direction()});
+    }
+
+    void scaled() {
+        const Ray ray = random_ray();
+        const Vec3d unit = times(1 / length(ray.direction), ray.direction);
+        for (const double factor : {1e-6, 1e-3, 1e3, 1e6, 1e-150, 1e150}) {
+            rays_.push_back({ray.origin, times(factor, unit)});
+        }
+        rays_.push_back({ray.origin, times(std::pow(10, random_.uniform(-6, 6)), unit)});
+    }
+
+    void parallel() {
+        const std::size_t k = random_.below(3);
+        Vec3d d{0, 0, 0};
+        d[k] = random_.sign() * (random_.chance(0.5) ? 1 : random_.uniform(0.1, 10));
+        Vec3d o = target();
+        if (!field_.elements().empty() && random_.chance(0.5)) {  // exactly through a mark
+            const auto points = marks(field_.elements()[random_.below(field_.elements().size())]);
+            o = points[0];
+        }
+        o[k] = center_[k] - 3 * size_ * (d[k] > 0 ? 1 : -1);
+        rays_.push_back({o, d});
+    }
+
+    void surface() {
+        const Ray ray = random_ray();
+        const reference::ReferenceAnswer answer = first_root(field_, ray);
+        if (answer.outcome != reference::Outcome::hit) return;
+        const Vec3d o = plus(ray.origin, answer.t.lo.to_double(), ray.direction);
+        rays_.push_back({o, ray.direction});
+        rays_.push_back({o, times(-1, ray.direction)});
+        rays_.push_back({o, some_direction()});
+    }
+
+    void far() {
+        const Vec3d d = some_direction();
+        const double away = 1e6 * size_;
+        rays_.push_back({plus(target(), -away, d), random_.chance(0.5) ? d : times(away, d)});
+    }
+
+    reference::ReferenceField field_;
+    Random random_;
+    Vec3d center_;
+    double size_ = 1;  // half the diagonal of a box around the scene
+    std::vector<Ray> rays_;
+};
+
+}  // namespace
+
+std::vector<Ray> nasty_rays(const Scene& scene, RayKind kind, std::size_t count,
+                            std::uint64_t seed) {
+    return Maker(scene, seed).make(kind, count);
+}
+
+}  // namespace ivory::tools

@@ -1,0 +1,101 @@
+#include "tests/tools/random_scene.h"
+
+#include <cmath>
+
+#include "tests/reference/reference.h"
+
+namespace ivory::tools {
+
+namespace {
+
+double rounded_off(double x) { return std::round(x * 0x1p20) * 0x1p-20; }
+
+Vec3d rounded_off(const Vec3d& v) { return {rounded_off(v.x), rounded_off(v.y), rounded_off(v.z)}; }
+
+Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+Element random_element(Random& random, double half) {
+    Element element;
+    const Vec3d p = rounded_off(random.in_cube(half));
+    switch (random.below(3)) {
+        case 0:
+            element.skeleton = PointSkeleton{p};
+            break;
+        case 1: {
+            const Vec3d q = random.chance(0.05) ? p : sum(p, rounded_off(random.in_cube(1)));
+            element.skeleton = SegmentSkeleton{p, q};
+            break;
+        }
+        default: {
+            Vec3d normal{0, 0, 0};
+            if (random.chance(0.3)) {
+                normal[random.below(3)] = random.sign();
+            } else {
+                normal = sum(rounded_off(random.in_cube(1)), {0, 0, 0x1p-21});  // never 0
+            }
+            const double radius = random.chance(0.05) ? 0 : rounded_off(random.uniform(0.1, 1.5));
+            element.skeleton = CircleSkeleton{p, normal, radius};
+        }
+    }
+    element.kernel = static_cast<KernelKind>(random.below(3));
+    element.strength = random.uniform(0.5, 1.5) * (random.chance(0.2) ? -1 : 1);
+    element.width = std::exp(random.uniform(std::log(0.3), std::log(1.5)));
+    element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+    element.visible = !random.chance(0.05);
+    return element;
+}
+
+// The same element at -p, or scaled and shifted.
+template <class Move>
+Element moved(Element element, Move&& move, double factor) {
+    if (auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
+        point->position = move(point->position);
+    } else if (auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+        segment->a = move(segment->a);
+        segment->b = move(segment->b);
+    } else if (auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
+        circle->center = move(circle->center);
+        circle->radius *= factor;
+    }
+    element.width *= factor;
+    return element;
+}
+
+}  // namespace
+
+Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed) {
+    Random random(seed);
+    Scene scene;
+    const double half = 0.9 * std::cbrt(static_cast<double>(recipe.elements));
+    while (scene.elements.size() < recipe.elements) {
+        Element element = random_element(random, half);
+        if (scene.elements.empty()) {
+            element.strength = std::fabs(element.strength);
+            element.visible = true;
+        }
+        scene.elements.push_back(element);
+        if (recipe.critical) {
+            const auto mirror = [](const Vec3d& p) { return Vec3d{-p.x, -p.y, -p.z}; };
+            scene.elements.push_back(moved(element, mirror, 1));
+        }
+    }
+    scene.threshold = random.uniform(0.1, 0.9);
+    if (recipe.critical) {
+        // At the origin t = 0 of any ray that starts there.
+        const Ray from_center{{0, 0, 0}, {0, 0, 1}};
+        const double field = reference::ReferenceField(scene)
+                                 .at(from_center, reference::Real(0.0))
+                                 .f.lo.to_double() +
+                             scene.threshold;
+        const double off = random.sign() * std::pow(10, -random.uniform(3, 14));
+        if (field > 0.01) scene.threshold = field * (1 + off);
+    }
+    const auto place = [&](const Vec3d& p) {
+        return Vec3d{p.x * recipe.scale + recipe.shift, p.y * recipe.scale + recipe.shift,
+                     p.z * recipe.scale + recipe.shift};
+    };
+    for (Element& element : scene.elements) element = moved(element, place, recipe.scale);
+    return scene;
+}
+
+}  // namespace ivory::tools
