@@ -1,0 +1,106 @@
+# Sourced by app/run and tests/run, after `root` is set: installs what the build needs and builds.
+# All messages go to standard error and nothing is read from standard input: both are the program's.
+# shellcheck shell=bash disable=SC2034,SC2154
+
+# What configuring and building one preset takes. libimgui-dev's pkg-config file wants libstb-dev.
+build_packages=(
+    cmake ninja-build g++ pkg-config
+    nlohmann-json3-dev libcli11-dev libpng-dev libhwy-dev
+    libglfw3-dev libglm-dev libimgui-dev libstb-dev
+    libgtest-dev libmpfr-dev
+)
+installed_now=no
+
+say() { printf 'ivory: %s\n' "$*" >&2; }
+
+# Runs a command in silence; shows what it said and ends where it fails.
+quietly() {
+    local log
+    log=$(mktemp)
+    if ! "$@" >"$log" 2>&1 </dev/null; then
+        cat "$log" >&2
+        rm -f "$log"
+        say "failed: $*"
+        exit 1
+    fi
+    rm -f "$log"
+}
+
+# need_packages NAME...: installs those that are missing. Where it cannot, it says what is needed and
+# goes on: the tools may be there without their packages.
+need_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        if [[ ! -d $root/build ]]; then
+            say "no apt-get here; needed are what Debian calls: $*"
+        fi
+        return 0
+    fi
+    local present name missing=()
+    present=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+    for name in "$@"; do
+        grep -qxF "installed $name" <<<"$present" || missing+=("$name")
+    done
+    if ((${#missing[@]} == 0)); then return 0; fi
+
+    local as_root=()
+    if ((EUID != 0)); then
+        if ! command -v sudo >/dev/null; then
+            say "missing packages, and neither root nor sudo to install them: ${missing[*]}"
+            return 0
+        fi
+        as_root=(sudo)
+    fi
+    say "installing ${missing[*]}"
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
+        apt-get -qq -o DPkg::Lock::Timeout=300)
+    quietly "${apt[@]}" update
+    quietly "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"
+    installed_now=yes
+}
+
+# CMake 3.25 or newer on the path; where the distribution's is older (Ubuntu 22.04) PyPI's, below build/.
+need_cmake() {
+    local own=$root/build/cmake
+    if [[ ! -x $own/bin/cmake ]]; then
+        local version
+        version=$(cmake --version 2>/dev/null | sed -n 's/^cmake version //p')
+        if [[ $(printf '%s\n' 3.25 "$version" | sort -V | head -n 1) == 3.25 ]]; then return 0; fi
+        need_packages python3-venv
+        say "installing CMake from PyPI into build/cmake (found ${version:-none}, needed 3.25)"
+        quietly python3 -m venv "$own"
+        quietly "$own/bin/pip" install --quiet 'cmake>=3.25,<4'
+    fi
+    PATH=$own/bin:$PATH
+}
+
+# build PRESET [TARGET...]: configures where that has not been done and builds, all targets without one.
+build() {
+    local preset=$1 folder=$root/build/$1
+    shift
+    mkdir -p "$folder"
+    # One build at a time in a folder; the lock ends with this function.
+    local lock
+    exec {lock}>"$folder/.lock"
+    if command -v flock >/dev/null; then flock "$lock"; fi
+    build_locked "$preset" "$folder" "$@"
+    exec {lock}>&-
+}
+
+build_locked() {
+    local preset=$1 folder=$2
+    shift 2
+    if [[ $installed_now == yes || ! -e $folder/build.ninja ||
+        $root/CMakePresets.json -nt $folder/build.ninja ]]; then
+        say "configuring build/$preset"
+        quietly env -C "$root" cmake --preset "$preset"
+    fi
+    local plan
+    plan=$(ninja -C "$folder" -n "$@" 2>/dev/null </dev/null | tail -n 1)
+    if [[ $plan == "ninja: no work to do." ]]; then return 0; fi
+    say "building build/$preset"
+    if [[ -t 2 ]]; then
+        ninja -C "$folder" "$@" >&2 </dev/null
+    else
+        quietly ninja -C "$folder" "$@"
+    fi
+}

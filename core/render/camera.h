@@ -1,0 +1,44 @@
+// From a camera to its rays: the frame of the view, the ray of each pixel, the cone around a
+// rectangle of them, and the camera of a scene that names none.
+#pragma once
+
+#include "core/field/field.h"
+#include "core/field/support.h"
+#include "core/render/tiles.h"
+#include "core/scene/scene.h"
+#include "core/trace/ray.h"
+
+namespace ivory {
+
+// A camera and what follows from it, in double:
+//   forward = normalize(target - position), right = normalize(forward x up),
+//   top = right x forward, s = tan(fov / 2)
+struct View {
+    Camera camera;
+    Vec3d forward, right, top;
+    double s = 0;
+};
+
+// Throws Error where the camera has a fault (core/scene/scene_fault.h) or its frame is lost to
+// rounding.
+[[nodiscard]] View make_view(const Camera& camera);
+
+// The camera of a scene without one: it looks at the centre of the box from the direction
+// (0.4, 0.3, 1), 1.1 times as far away as the sphere around the box needs to fit the smaller angle
+// of view. `aspect` is width / height; for an empty box the one of [-1, 1]^3 is taken.
+// Throws Error where the box is too large for doubles.
+[[nodiscard]] Camera default_camera(const Box3& reach_box, double aspect);
+
+// The scene's camera, or the default one for a picture of that many pixels.
+[[nodiscard]] Camera camera_of(const Scene& scene, const Field& field, int width, int height);
+
+// The ray through the middle of pixel (i, j), j counted from the top, of a picture of
+// width x height:
+//   direction = normalize(forward + (2 (i + 0.5)/W - 1) s W/H right + (1 - 2 (j + 0.5)/H) s top)
+[[nodiscard]] Ray primary_ray(const View& view, int width, int height, int i, int j);
+
+// A cone that holds the primary rays, as the doubles they are, of all pixels of a rectangle that is
+// not empty. Proof: camera.cpp.
+[[nodiscard]] Cone cone_around(const View& view, int width, int height, const PixelRect& rect);
+
+}  // namespace ivory

@@ -1,0 +1,62 @@
+// What a picture is a function of, and what it is painted on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/field/field.h"
+#include "core/field/support.h"
+#include "core/render/camera.h"
+#include "core/render/frame.h"
+#include "core/render/shade.h"
+#include "core/render/tiles.h"
+#include "core/trace/methods/method.h"
+
+namespace ivory {
+
+// Together with the size of the canvas this decides every byte: nothing else leaves a trace.
+struct Picture {
+    std::shared_ptr<const Field> field;
+    View view;
+    Lighting lighting;
+    const Method* method = nullptr;
+    MethodOptions options;
+};
+
+// A tile as the last job left it.
+struct TileState {
+    // 0: nothing traced yet; n: the pixels whose column and row are multiples of n are traced, so
+    // that 1 is all of them.
+    int stride = 0;
+    bool empty = false;     // a list proved f < 0 on all its rays: every pixel is a miss
+    bool has_list = false;  // `list` is valid on the tile's rays
+    ElementList list;
+    std::array<std::uint16_t, 5> pixels{};  // how many of the traced ones have each Status
+    double enclosure_width_max = 0;         // the widest t of a hit, as a length in the scene
+    double unresolved_width_max = 0;        // and of an unresolved pixel
+};
+
+// Not to be touched while a job works on it, but for what the job's notices allow.
+struct Canvas {
+    TileGrid grid;
+    Frame frame;
+    std::vector<TileState> tiles;
+
+    // Throws std::bad_alloc.
+    Canvas(int width, int height, bool keep_surface)
+        : grid(width, height), frame(width, height, keep_surface), tiles(grid.tiles.size()) {}
+
+    // For a field or a view that has changed: lists of the old one prove nothing of the new one.
+    // Colours, lights and background leave them valid.
+    void forget_lists() {
+        for (TileState& tile : tiles) {
+            tile.has_list = false;
+            tile.list = {};
+        }
+    }
+};
+
+}  // namespace ivory

@@ -1,0 +1,493 @@
+#include "core/render/render.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+#include <stop_token>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace ivory {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t pixels_in_tile = TileGrid::tile_side * TileGrid::tile_side;
+
+// What a worker adds up for itself, and the report gets at its end.
+struct Tally {
+    Counts counts;
+    Clock::duration tracing{}, shading{};
+    std::size_t tiles = 0;
+    std::vector<std::uint8_t> reached;  // by element
+};
+
+// A pixel between tracing and the frame: nothing of a tile is written before all of it is known, so
+// that a cancelled tile stays what it was.
+struct Traced {
+    int i, j;
+    Isolation isolation;
+    SurfacePoint surface;
+    Rgba8 color;
+};
+
+std::vector<int> strides_of(const JobSettings& settings) {
+    const bool coarse = settings.order == Order::coarse_to_fine && settings.task != Task::shade;
+    return coarse ? std::vector<int>{8, 4, 2, 1} : std::vector<int>{1};
+}
+
+// Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
+// so alike, its corner being a multiple of 16.
+bool on_stride(int i, int j, int stride) {
+    return i % stride == 0 && j % stride == 0;
+}
+
+}  // namespace
+
+// The work is a sequence of steps, dealt out by one atomic number:
+//
+//   step 0 ..                the lists of the regions that hold a block without lists
+//   then, for each stride    the blocks, first those around the focus
+//
+// A step waits for the one that it builds on: a block of the first pass for its region, one of a
+// later pass for the same block in the pass before. That one has a smaller number and so is being
+// done already; by induction somebody always gets on.
+class FrameJob::Work {
+  public:
+    Work(Picture picture, Canvas& canvas, JobSettings settings)
+        : picture_(std::move(picture)),
+          canvas_(canvas),
+          settings_(std::move(settings)),
+          strides_(strides_of(settings_)),
+          all_(all_elements(*picture_.field)),
+          region_lists_(canvas.grid.regions.size()),
+          region_done_(canvas.grid.regions.size()),
+          passes_done_(canvas.grid.blocks.size()) {
+        plan();
+    }
+
+    void start() {
+        started_ = Clock::now();
+        const int threads = std::max(settings_.threads, 1);
+        tallies_.resize(static_cast<std::size_t>(threads));
+        running_ = threads;
+        for (Tally& tally : tallies_) {
+            try {
+                workers_.emplace_back([this, &tally] { work(tally); });
+            } catch (const std::system_error&) {
+                // Fewer workers do the same work; none at all cannot.
+                leave();
+                if (workers_.empty() && &tally == &tallies_.back()) throw;
+            }
+        }
+    }
+
+    void cancel() noexcept { stop_.request_stop(); }
+
+    bool finished() const {
+        const std::lock_guard lock(mutex_);
+        return running_ == 0;
+    }
+
+    bool wait_for(std::chrono::milliseconds time) const {
+        std::unique_lock lock(mutex_);
+        return ended_.wait_for(lock, time, [this] { return running_ == 0; });
+    }
+
+    JobReport finish() {
+        workers_.clear();  // joins
+        if (failure_) std::rethrow_exception(failure_);
+        JobReport report;
+        report.complete = !cut_short_.load();
+        report.seconds = std::chrono::duration<double>(finished_ - started_).count();
+        Clock::duration tracing{}, shading{};
+        std::vector<std::uint8_t> reached(picture_.field->size());
+        for (const Tally& tally : tallies_) {
+            report.counts += tally.counts;
+            report.tiles_traced += tally.tiles;
+            tracing += tally.tracing;
+            shading += tally.shading;
+            for (std::size_t e = 0; e < tally.reached.size(); ++e) reached[e] |= tally.reached[e];
+        }
+        const auto both = static_cast<double>((tracing + shading).count());
+        report.shade_share = both > 0 ? static_cast<double>(shading.count()) / both : 0;
+        report.elements_reached =
+            static_cast<std::size_t>(std::count(reached.begin(), reached.end(), 1));
+        return report;
+    }
+
+    double progress() const noexcept {
+        const std::size_t dealt = std::min(next_.load(std::memory_order_relaxed), steps_);
+        return steps_ == 0 ? 1 : static_cast<double>(dealt) / static_cast<double>(steps_);
+    }
+
+  private:
+    const Squares& tiles() const { return canvas_.grid.tiles; }
+    const Squares& blocks() const { return canvas_.grid.blocks; }
+    const Squares& regions() const { return canvas_.grid.regions; }
+    bool selected(std::size_t tile) const {
+        return settings_.selected.empty() || settings_.selected[tile] != 0;
+    }
+
+    void plan() {
+        std::vector<std::uint8_t> needed(regions().size());
+        for (std::size_t block = 0; block < blocks().size(); ++block) {
+            const PixelRect rect = blocks().rect(block);
+            bool any = false;
+            bool without_list = false;
+            for_squares_in(tiles(), rect, [&](std::size_t tile) {
+                any = any || selected(tile);
+                without_list = without_list || (selected(tile) && !canvas_.tiles[tile].has_list);
+            });
+            if (any) block_order_.push_back(block);
+            if (without_list) needed[regions().at(rect.x0, rect.y0)] = 1;
+        }
+        if (settings_.order == Order::coarse_to_fine) begin_at_focus();
+
+        // The regions in the order in which the blocks will ask for them.
+        for (const std::size_t block : block_order_) {
+            const std::size_t region = region_of(block);
+            if (needed[region] == 0) continue;
+            needed[region] = 0;
+            region_order_.push_back(region);
+        }
+        steps_ = region_order_.size() + strides_.size() * block_order_.size();
+    }
+
+    void begin_at_focus() {
+        const bool given = settings_.focus_i >= 0 && settings_.focus_j >= 0;
+        const long focus_i = given ? settings_.focus_i : canvas_.frame.width / 2;
+        const long focus_j = given ? settings_.focus_j : canvas_.frame.height / 2;
+        const auto distance = [&](std::size_t block) {
+            const PixelRect rect = blocks().rect(block);
+            const long i = (rect.x0 + rect.x1) / 2 - focus_i;
+            const long j = (rect.y0 + rect.y1) / 2 - focus_j;
+            return i * i + j * j;
+        };
+        std::stable_sort(
+            block_order_.begin(), block_order_.end(),
+            [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+    }
+
+    std::size_t region_of(std::size_t block) const {
+        const PixelRect rect = blocks().rect(block);
+        return regions().at(rect.x0, rect.y0);
+    }
+
+    bool stopped() const { return stop_.stop_requested(); }
+
+    void work(Tally& tally) {
+        try {
+            tally.reached.resize(picture_.field->size());
+            while (!stopped()) {
+                const std::size_t step = next_.fetch_add(1, std::memory_order_relaxed);
+                if (step >= steps_) break;
+                if (!take(step, tally)) cut_short_ = true;
+            }
+            if (next_.load(std::memory_order_relaxed) < steps_) cut_short_ = true;
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            if (!failure_) failure_ = std::current_exception();
+            stop_.request_stop();
+        }
+        leave();
+    }
+
+    void leave() {
+        const std::lock_guard lock(mutex_);
+        if (--running_ > 0) return;
+        finished_ = Clock::now();
+        ended_.notify_all();
+    }
+
+    // False: cancelled on the way.
+    bool take(std::size_t step, Tally& tally) {
+        if (step < region_order_.size()) {
+            const Clock::time_point start = Clock::now();
+            const std::size_t region = region_order_[step];
+            region_lists_[region] = narrowed(all_, regions().rect(region));
+            region_done_[region].store(1, std::memory_order_release);
+            tally.tracing += Clock::now() - start;
+            return true;
+        }
+        step -= region_order_.size();
+        const std::size_t pass = step / block_order_.size();
+        const std::size_t block = block_order_[step % block_order_.size()];
+        if (pass > 0 && !wait_until(passes_done_[block], static_cast<int>(pass))) return false;
+        if (!take_block(block, pass, tally)) return false;
+        passes_done_[block].store(static_cast<int>(pass) + 1, std::memory_order_release);
+        return true;
+    }
+
+    // Short: whoever is at it has at most the rest of one step to do.
+    bool wait_until(const std::atomic<int>& done, int least) const {
+        while (done.load(std::memory_order_acquire) < least) {
+            if (stopped()) return false;
+            std::this_thread::yield();
+        }
+        return true;
+    }
+
+    ElementList narrowed(const ElementList& parent, const PixelRect& rect) const {
+        if (parent.certainly_empty) return parent;
+        const Frame& frame = canvas_.frame;
+        return reaching_elements(*picture_.field, parent,
+                                 cone_around(picture_.view, frame.width, frame.height, rect));
+    }
+
+    bool take_block(std::size_t block, std::size_t pass, Tally& tally) {
+        const PixelRect rect = blocks().rect(block);
+        if (pass == 0 && !hand_down_lists(rect, tally)) return false;
+        bool done = true;
+        for_squares_in(tiles(), rect, [&](std::size_t tile) {
+            done = done && (!selected(tile) || take_tile(tile, pass, tally));
+        });
+        return done;
+    }
+
+    bool hand_down_lists(const PixelRect& rect, Tally& tally) {
+        std::array<std::size_t, 16> missing{};
+        std::size_t count = 0;
+        for_squares_in(tiles(), rect, [&](std::size_t tile) {
+            if (selected(tile) && !canvas_.tiles[tile].has_list) missing[count++] = tile;
+        });
+        if (count == 0) return true;
+        const std::size_t region = regions().at(rect.x0, rect.y0);
+        if (!wait_until(region_done_[region], 1)) return false;
+
+        const Clock::time_point start = Clock::now();
+        const ElementList list = narrowed(region_lists_[region], rect);
+        for (std::size_t m = 0; m < count; ++m) {
+            TileState& tile = canvas_.tiles[missing[m]];
+            tile.list = narrowed(list, tiles().rect(missing[m]));
+            tile.has_list = true;
+        }
+        tally.tracing += Clock::now() - start;
+        return true;
+    }
+
+    bool take_tile(std::size_t index, std::size_t pass, Tally& tally) {
+        TileState& tile = canvas_.tiles[index];
+        const bool first = pass == 0;
+        const bool last = pass + 1 == strides_.size();
+        if (first) {
+            ++tally.tiles;
+            if (!tile.list.certainly_empty) {
+                for (const std::uint32_t element : tile.list.elements) tally.reached[element] = 1;
+            }
+        }
+        bool done = true;
+        if (settings_.task == Task::shade) {
+            done = shade_again(index, tally);
+        } else if (!tile.list.certainly_empty) {
+            done = trace_tile(index, pass, tally);
+        } else if (first) {
+            leave_empty(index);
+        }
+        if (done && last && !settings_.keep_lists) {
+            tile.has_list = false;
+            tile.list = {};
+        }
+        return done;
+    }
+
+    void notify(std::size_t tile) const {
+        if (settings_.on_tile) {
+            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride});
+        }
+    }
+
+    void leave_empty(std::size_t index) {
+        Frame& frame = canvas_.frame;
+        const PixelRect rect = tiles().rect(index);
+        for (int j = rect.y0; j < rect.y1; ++j) {
+            for (std::size_t p = frame.at(rect.x0, j), end = p + static_cast<std::size_t>(rect.width());
+                 p < end; ++p) {
+                frame.status[p] = Status::miss;
+                frame.color[p] = picture_.lighting.background;
+            }
+        }
+        TileState& tile = canvas_.tiles[index];
+        tile.stride = 1;
+        tile.empty = true;
+        tile.pixels = {};
+        tile.pixels[static_cast<std::size_t>(Status::miss)] = static_cast<std::uint16_t>(rect.area());
+        tile.enclosure_width_max = 0;
+        tile.unresolved_width_max = 0;
+        notify(index);
+    }
+
+    bool trace_tile(std::size_t index, std::size_t pass, Tally& tally) {
+        const TileState& tile = canvas_.tiles[index];
+        const PixelRect rect = tiles().rect(index);
+        const int stride = strides_[pass];
+        const Clock::time_point start = Clock::now();
+
+        std::array<Traced, pixels_in_tile> traced;
+        std::size_t count = 0;
+        for (int j = rect.y0; j < rect.y1; j += stride) {
+            if (stopped()) return false;
+            for (int i = rect.x0; i < rect.x1; i += stride) {
+                if (pass > 0 && on_stride(i, j, strides_[pass - 1])) continue;
+                traced[count++] = {i, j, isolate(tile.list, ray(i, j), tally.counts), {}, {}};
+            }
+        }
+        const Clock::time_point between = Clock::now();
+        tally.tracing += between - start;
+        for (std::size_t k = 0; k < count; ++k) look_at(traced[k], tile.list);
+        commit(index, pass, traced.data(), count);
+        tally.shading += Clock::now() - between;
+        notify(index);
+        return true;
+    }
+
+    Ray ray(int i, int j) const {
+        return primary_ray(picture_.view, canvas_.frame.width, canvas_.frame.height, i, j);
+    }
+
+    Isolation isolate(const ElementList& list, const Ray& ray, Counts& counts) const {
+        const Field& field = *picture_.field;
+        const Isolation isolation =
+            picture_.method->isolate(field, list, ray, picture_.options, counts);
+        // What the list leaves open may be closed by the elements that it left out.
+        const bool all_were_there = list.rest.lo == 0 && list.rest.hi == 0;
+        if (isolation.status != Status::unresolved || all_were_there) return isolation;
+        return picture_.method->isolate(field, all_, ray, picture_.options, counts);
+    }
+
+    // The surface, and its colour in the light, as far as the task wants them.
+    void look_at(Traced& pixel, const ElementList& list) const {
+        const bool shaded = settings_.task != Task::trace;
+        pixel.color = picture_.lighting.background;
+        if (!possibly_hit(pixel.isolation.status)) return;
+        if (!shaded && canvas_.frame.surface.empty()) return;
+        const Ray r = ray(pixel.i, pixel.j);
+        pixel.surface = picture_.method->surface(*picture_.field, list, r,
+                                                 midpoint(pixel.isolation.t), picture_.options);
+        if (shaded) pixel.color = shade(picture_.lighting, r.direction, pixel.surface);
+    }
+
+    void commit(std::size_t index, std::size_t pass, const Traced* traced, std::size_t count) {
+        Frame& frame = canvas_.frame;
+        TileState& tile = canvas_.tiles[index];
+        if (pass == 0) {
+            tile.empty = false;
+            tile.pixels = {};
+            tile.enclosure_width_max = 0;
+            tile.unresolved_width_max = 0;
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            const Traced& pixel = traced[k];
+            const std::size_t p = frame.at(pixel.i, pixel.j);
+            const Isolation& isolation = pixel.isolation;
+            frame.status[p] = isolation.status;
+            if (settings_.task != Task::trace) frame.color[p] = pixel.color;
+            ++tile.pixels[static_cast<std::size_t>(isolation.status)];
+            if (!possibly_hit(isolation.status)) continue;
+            frame.t_lo[p] = isolation.t.lo;
+            frame.t_hi[p] = isolation.t.hi;
+            if (!frame.surface.empty()) frame.surface[p] = pixel.surface;
+            // Primary rays have length 1, so that a span of t is a length.
+            double& widest = isolation.status == Status::unresolved ? tile.unresolved_width_max
+                                                                    : tile.enclosure_width_max;
+            widest = std::max(widest, width(isolation.t));
+        }
+        tile.stride = strides_[pass];
+    }
+
+    // Colours, lights and background anew, from the t that stand in the frame.
+    bool shade_again(std::size_t index, Tally& tally) {
+        Frame& frame = canvas_.frame;
+        const TileState& tile = canvas_.tiles[index];
+        const PixelRect rect = tiles().rect(index);
+        const Clock::time_point start = Clock::now();
+        std::array<Traced, pixels_in_tile> traced;
+        std::size_t count = 0;
+        // Nothing to shade where nothing is traced.
+        const int stride = tile.stride == 0 ? TileGrid::tile_side : tile.stride;
+        for (int j = rect.y0; tile.stride != 0 && j < rect.y1; j += stride) {
+            if (stopped()) return false;
+            for (int i = rect.x0; i < rect.x1; i += stride) {
+                const std::size_t p = frame.at(i, j);
+                Isolation isolation{frame.status[p], {}};
+                if (possibly_hit(isolation.status)) isolation.t = frame.t(p);
+                traced[count] = {i, j, isolation, {}, {}};
+                look_at(traced[count++], tile.list);
+            }
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t p = frame.at(traced[k].i, traced[k].j);
+            frame.color[p] = traced[k].color;
+            if (!frame.surface.empty() && possibly_hit(traced[k].isolation.status)) {
+                frame.surface[p] = traced[k].surface;
+            }
+        }
+        tally.shading += Clock::now() - start;
+        notify(index);
+        return true;
+    }
+
+    const Picture picture_;
+    Canvas& canvas_;
+    const JobSettings settings_;
+    const std::vector<int> strides_;
+    const ElementList all_;
+
+    std::vector<std::size_t> region_order_, block_order_;
+    std::size_t steps_ = 0;
+    std::atomic<std::size_t> next_{0};
+    std::vector<ElementList> region_lists_;
+    std::vector<std::atomic<int>> region_done_;
+    std::vector<std::atomic<int>> passes_done_;  // by block
+
+    std::stop_source stop_;
+    std::atomic<bool> cut_short_{false};
+    Clock::time_point started_, finished_;
+
+    mutable std::mutex mutex_;
+    mutable std::condition_variable ended_;
+    int running_ = 0;
+    std::exception_ptr failure_;
+    std::vector<Tally> tallies_;
+    std::vector<std::jthread> workers_;  // last: joined before anything that they use is gone
+};
+
+FrameJob::FrameJob(Picture picture, Canvas& canvas, JobSettings settings)
+    : work_(std::make_unique<Work>(std::move(picture), canvas, std::move(settings))) {
+    work_->start();
+}
+
+FrameJob::~FrameJob() {
+    cancel();
+}
+
+void FrameJob::cancel() noexcept {
+    work_->cancel();
+}
+
+bool FrameJob::finished() const {
+    return work_->finished();
+}
+
+bool FrameJob::wait_for(std::chrono::milliseconds time) const {
+    return work_->wait_for(time);
+}
+
+JobReport FrameJob::finish() {
+    return work_->finish();
+}
+
+double FrameJob::progress() const noexcept {
+    return work_->progress();
+}
+
+JobReport render(const Picture& picture, Canvas& canvas, const JobSettings& settings) {
+    return FrameJob(picture, canvas, settings).finish();
+}
+
+}  // namespace ivory

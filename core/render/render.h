@@ -1,0 +1,92 @@
+// A picture painted on a canvas by worker threads: tile by tile, coarse to fine if asked, in full or
+// in part, until it is done or cancelled.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/render/canvas.h"
+#include "core/trace/ray.h"
+
+namespace ivory {
+
+enum class Task : std::uint8_t {
+    trace_and_shade,
+    trace,  // no colours: for depth, or for answers where the canvas keeps the surface
+    shade,  // what is traced already, from its t: after a change of colours, lights or background
+};
+
+enum class Order : std::uint8_t {
+    plain,           // each tile once, all of its pixels
+    coarse_to_fine,  // all tiles with every 8th pixel, then 4th, 2nd, all; no pixel traced twice
+};
+
+// Pixels whose column and row are multiples of `stride` are in the frame now. Those between that are
+// not traced yet hold nothing new.
+struct TileNotice {
+    std::size_t tile;
+    PixelRect rect;
+    int stride;  // 8, 4, 2 or 1
+};
+
+struct JobSettings {
+    int threads = 1;  // 1 or more
+    Task task = Task::trace_and_shade;
+    Order order = Order::plain;
+    bool keep_lists = false;  // in the canvas, for the next job
+    // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
+    std::vector<std::uint8_t> selected;
+    // Coarse to fine, the pixel around which each pass begins; -1, -1: the middle.
+    int focus_i = -1, focus_j = -1;
+    // Called by the workers, several at a time, never twice at a time for one tile. It may read the
+    // pixels of that tile that the notice names until it returns. Must not throw.
+    std::function<void(const TileNotice&)> on_tile;
+};
+
+struct JobReport {
+    bool complete = false;  // false: cancelled before the last tile
+    double seconds = 0;     // from start to the last worker's end
+    double shade_share = 0; // of the workers' time, 0..1; the rest went into tracing
+    Counts counts;
+    std::size_t tiles_traced = 0;      // tiles of which this job traced or shaded a pixel
+    std::size_t elements_reached = 0;  // elements in the list of a tile that is not empty
+};
+
+// Starts at once. The canvas must outlive it and belongs to it until `finish`, `cancel_and_wait` or
+// the destructor has returned; then every tile is what its TileState says, cancelled or not.
+class FrameJob {
+  public:
+    // Throws std::bad_alloc, or std::system_error where no thread can be started.
+    FrameJob(Picture picture, Canvas& canvas, JobSettings settings);
+    ~FrameJob();  // cancels and waits
+    FrameJob(const FrameJob&) = delete;
+    FrameJob& operator=(const FrameJob&) = delete;
+
+    // Returns at once; the workers end after at most 16 pixels more each.
+    void cancel() noexcept;
+
+    // Whether all workers have ended. Never waits.
+    [[nodiscard]] bool finished() const;
+
+    // Waits that long at most; whether all workers have ended.
+    [[nodiscard]] bool wait_for(std::chrono::milliseconds time) const;
+
+    // Waits for the end. Throws what a worker threw (std::bad_alloc).
+    JobReport finish();
+
+    // Share of the work that has been dealt out, 0..1.
+    [[nodiscard]] double progress() const noexcept;
+
+  private:
+    class Work;
+    std::unique_ptr<Work> work_;
+};
+
+// All at once: a job with these settings, from start to end.
+JobReport render(const Picture& picture, Canvas& canvas, const JobSettings& settings);
+
+}  // namespace ivory

@@ -1,0 +1,66 @@
+#include "core/render/statistics.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/render/answers_file.h"
+
+namespace ivory {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json array_of(const Vec3d& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+}  // namespace
+
+PixelStatistics pixel_statistics(const Canvas& canvas) {
+    PixelStatistics sum;
+    sum.tiles = canvas.tiles.size();
+    for (const TileState& tile : canvas.tiles) {
+        if (tile.stride == 0) continue;
+        for (std::size_t status = 0; status < sum.pixels.size(); ++status) {
+            sum.pixels[status] += tile.pixels[status];
+        }
+        if (tile.empty) ++sum.empty_tiles;
+        sum.enclosure_width_max = std::max(sum.enclosure_width_max, tile.enclosure_width_max);
+        sum.unresolved_width_max = std::max(sum.unresolved_width_max, tile.unresolved_width_max);
+    }
+    return sum;
+}
+
+std::string statistics_json(const RenderStatistics& s) {
+    Json pixels = Json::object();
+    for (std::size_t status = 0; status < s.pixels.pixels.size(); ++status) {
+        pixels[std::string(status_word(static_cast<Status>(status)))] = s.pixels.pixels[status];
+    }
+    Json json;
+    json["width"] = s.width;
+    json["height"] = s.height;
+    json["threads"] = s.threads;
+    json["target"] = target_word;
+    json["method"] = s.method;
+    json["tolerance"] = s.options.tolerance;
+    json["camera"] = {{"position", array_of(s.camera.position)},
+                      {"target", array_of(s.camera.target)},
+                      {"up", array_of(s.camera.up)},
+                      {"fov", s.camera.fov}};
+    json["repeats"] = s.repeats;
+    json["seconds"] = {{"load", s.seconds.load},   {"compile", s.seconds.compile},
+                       {"trace", s.seconds.trace}, {"shade", s.seconds.shade},
+                       {"write", s.seconds.write}, {"total", s.seconds.total}};
+    json["pixels"] = pixels;
+    json["evaluations"] = s.counts.evaluations;
+    json["element_evaluations"] = s.counts.element_evaluations;
+    json["elements"] = {{"total", s.elements},
+                        {"visible", s.visible_elements},
+                        {"reached", s.reached_elements}};
+    json["tiles"] = {{"total", s.pixels.tiles}, {"empty", s.pixels.empty_tiles}};
+    json["enclosure_width_max"] = s.pixels.enclosure_width_max;
+    json["unresolved_width_max"] = s.pixels.unresolved_width_max;
+    return json.dump(2) + "\n";
+}
+
+}  // namespace ivory

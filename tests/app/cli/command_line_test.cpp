@@ -1,0 +1,386 @@
+// The executable, run: what goes where, what stays on the disk, and how it ends.
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/app/cli/run_ivory.h"
+#include "tests/ordinary_user.h"
+
+namespace ivory {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using tests::bytes_of;
+using tests::Finished;
+using tests::Ivory;
+using tests::put_bytes;
+using tests::run_ivory;
+using tests::TemporaryFolder;
+
+const std::string figure_1 = tests::scene_path("figure-1");
+const std::string columns = "status,t_lo,t_hi,nx,ny,nz,r,g,b\n";
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+// Exit status, nothing on standard output, one line on standard error that holds `part`.
+void expect_failure(const Finished& run, int status, const std::string& part) {
+    EXPECT_EQ(run.status, status) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(run.err.starts_with("ivory: ")) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+}
+
+void wait_until(const std::function<bool()>& happened) {
+    for (int n = 0; n < 2000 && !happened(); ++n) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(happened());
+}
+
+TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
+    const std::vector<std::vector<std::string>> calls{
+        {"--help"}, {"render", "--help"}, {"trace", "--help"}, {"info", "--help"}, {"--version"}};
+    for (const std::vector<std::string>& words : calls) {
+        const Finished run = run_ivory(words);
+        EXPECT_EQ(run.status, 0);
+        EXPECT_NE(run.out.find("ivory"), std::string::npos);
+        EXPECT_EQ(run.err, "");
+    }
+}
+
+TEST(CommandLine, WrongUsageIsTwo) {
+    expect_failure(run_ivory({"render", figure_1}), 2, "-o OUT.png");
+    expect_failure(run_ivory({"render", figure_1, "-o", "x.png", "--method", "magic"}), 2,
+                   "proved");
+    expect_failure(run_ivory({"--no-such-option"}), 2, "--no-such-option");
+}
+
+TEST(CommandLine, ABrokenSceneIsOne) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "bad.ivory.json", "{\"ivory\": 1, \"elements\": []}");
+    for (const char* call : {"render", "trace", "info"}) {
+        std::vector<std::string> words{call, (folder / "bad.ivory.json").string()};
+        if (words[0] == "render") words.insert(words.end(), {"-o", (folder / "a.png").string()});
+        expect_failure(run_ivory(words), 1, "threshold");
+    }
+    EXPECT_EQ(files_in(folder.path()), 1u);
+    expect_failure(run_ivory({"info", (folder / "none").string()}), 1, "No such file");
+}
+
+TEST(CommandLine, RenderWritesAllThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    const Finished run =
+        run_ivory({"render", figure_1, "-o", out + "a.png", "--size", "40x30", "--depth",
+                   out + "a.pfm", "--answers", out + "a.csv", "--stats", out + "a.json", "--threads", "2"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err, "");  // no terminal, no progress
+    EXPECT_EQ(files_in(folder.path()), 4u);
+    EXPECT_TRUE(bytes_of(out + "a.png").starts_with("\x89PNG"));
+    EXPECT_TRUE(bytes_of(out + "a.pfm").starts_with("Pf\n40 30\n-1.0\n"));
+
+    const std::vector<std::string> answers = lines_of(bytes_of(out + "a.csv"));
+    ASSERT_EQ(answers.size(), 1200u);
+    std::map<std::string, int> statuses;
+    for (const std::string& line : answers) {
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14) << line;
+        std::istringstream fields(line);
+        std::string status;
+        for (int n = 0; n < 7; ++n) std::getline(fields, status, ',');
+        ++statuses[status];
+    }
+    const Json statistics = Json::parse(bytes_of(out + "a.json"));
+    EXPECT_EQ(statistics.at("width"), 40);
+    EXPECT_EQ(statistics.at("threads"), 2);
+    EXPECT_GT(statuses["hit"], 50);
+    for (const auto& [status, count] : statistics.at("pixels").items()) {
+        EXPECT_EQ(count, statuses[status]) << status;
+    }
+}
+
+// The rays of the answers, traced on their own, are answered the same.
+TEST(CommandLine, AnswersAreThoseOfTrace) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    ASSERT_EQ(run_ivory({"render", figure_1, "--size", "32x18", "--answers", out + "a.csv"}).status, 0);
+    std::string rays, expected = columns;
+    for (const std::string& line : lines_of(bytes_of(out + "a.csv"))) {
+        std::size_t at = 0;
+        for (int n = 0; n < 6; ++n) at = line.find(',', at) + 1;
+        rays += line.substr(0, at - 1) + "\n";
+        expected += line.substr(at, line.find(',', line.find(',', at) + 1) - at) + "\n";
+    }
+    put_bytes(out + "rays", rays);
+    const Finished run = run_ivory({"trace", figure_1, "--rays", out + "rays", "--tolerance", "1e-6"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    std::string statuses_and_t_lo = columns;
+    const std::vector<std::string> lines = lines_of(run.out);
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        statuses_and_t_lo += lines[k].substr(0, lines[k].find(',', lines[k].find(',') + 1)) + "\n";
+    }
+    EXPECT_EQ(statuses_and_t_lo, expected);
+}
+
+TEST(CommandLine, AnyNumberOfThreadsGivesTheSameBytes) {
+    const TemporaryFolder folder;
+    std::string first_png, first_csv;
+    for (const char* threads : {"1", "2", "5"}) {
+        const std::string out = folder.path().string() + "/";
+        ASSERT_EQ(run_ivory({"render", tests::scene_path("figure-2"), "--size", "90x60", "-o",
+                             out + "a.png", "--answers", out + "a.csv", "--threads", threads})
+                      .status,
+                  0);
+        const std::string png = bytes_of(out + "a.png"), csv = bytes_of(out + "a.csv");
+        if (first_png.empty()) first_png = png, first_csv = csv;
+        EXPECT_TRUE(png == first_png && csv == first_csv) << threads;
+    }
+}
+
+TEST(CommandLine, ADashIsStandardInputAndOutput) {
+    const Finished png = run_ivory({"render", "-", "-o", "-", "--size", "8x8"}, {figure_1, ""});
+    EXPECT_EQ(png.status, 0) << png.err;
+    EXPECT_TRUE(png.out.starts_with("\x89PNG"));
+    const Finished json = run_ivory({"render", figure_1, "--stats", "-", "--size", "8x8"});
+    EXPECT_EQ(Json::parse(json.out).at("height"), 8);
+    EXPECT_EQ(run_ivory({"info", "-", "--json"}, {figure_1, ""}).status, 0);
+}
+
+TEST(CommandLine, RepeatedRendersGiveTheMediansOfOne) {
+    const Finished run =
+        run_ivory({"render", figure_1, "--stats", "-", "--size", "8x8", "--repeat", "4"});
+    const Json json = Json::parse(run.out);
+    EXPECT_EQ(json.at("repeats"), 4);
+    EXPECT_EQ(json.at("pixels").at("hit").get<int>() + json.at("pixels").at("miss").get<int>(), 64);
+    for (const char* part : {"load", "compile", "trace", "shade", "write", "total"}) {
+        EXPECT_GE(json.at("seconds").at(part).get<double>(), 0) << part;
+    }
+}
+
+TEST(CommandLine, WhatCannotBeWrittenLeavesNothing) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    expect_failure(run_ivory({"render", figure_1, "-o", out + "none/a.png", "--size", "8x8"}), 1,
+                   "none/a.png: cannot be written");
+    expect_failure(run_ivory({"render", figure_1, "-o", out, "--size", "8x8"}), 1, "cannot be written");
+    // The second of two outputs fails: the first is not there either.
+    expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats", out + "none/s",
+                              "--size", "8x8"}),
+                   1, "none/s");
+    EXPECT_EQ(files_in(folder.path()), 0u);
+    if (fs::exists("/dev/full")) {
+        expect_failure(run_ivory({"render", figure_1, "-o", "/dev/full", "--size", "64x64"}), 1,
+                       "No space left");
+        expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--answers", "/dev/full",
+                                  "--size", "64x64"}),
+                       1, "No space left");
+    }
+    EXPECT_EQ(files_in(folder.path()), 0u);
+}
+
+TEST(CommandLine, WhatStoodThereStaysUntilTheNewFileIsWhole) {
+    const TemporaryFolder folder;
+    const std::string picture = (folder / "a.png").string();
+    put_bytes(picture, "old");
+    expect_failure(run_ivory({"render", figure_1, "-o", picture, "--stats",
+                              folder.path().string() + "/none/s", "--size", "8x8"}),
+                   1, "none/s");
+    EXPECT_EQ(bytes_of(picture), "old");
+    EXPECT_EQ(run_ivory({"render", figure_1, "-o", picture, "--size", "8x8"}).status, 0);
+    EXPECT_TRUE(bytes_of(picture).starts_with("\x89PNG"));
+}
+
+TEST(CommandLine, TheSceneIsNotOverwritten) {
+    const TemporaryFolder folder;
+    const std::string scene = (folder / "s.ivory.json").string();
+    fs::copy_file(figure_1, scene);
+    expect_failure(run_ivory({"render", scene, "-o", scene}), 1, "is the scene itself");
+    EXPECT_EQ(bytes_of(scene), bytes_of(figure_1));
+}
+
+TEST(CommandLine, AStandardOutputThatTakesNothingIsOne) {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"--help"}, {"info", figure_1}, {"trace", figure_1}, {"render", figure_1, "-o", "-", "--size", "8x8"}}) {
+        expect_failure(run_ivory(words, {"/dev/null", "closed"}), 1, "standard output");
+        if (!fs::exists("/dev/full")) continue;
+        expect_failure(run_ivory(words, {"/dev/null", "/dev/full"}), 1, "No space left");
+    }
+}
+
+TEST(CommandLine, AReaderThatLeavesIsNoCrash) {
+    const TemporaryFolder folder;
+    std::string rays;
+    for (int n = 0; n < 20000; ++n) rays += "0 0 8 0 0 -1\n";
+    put_bytes(folder / "rays", rays);
+    const std::string call = "{ '" IVORY_EXECUTABLE "' trace '" + figure_1 + "' --rays '" +
+                             (folder / "rays").string() + "' 2>'" + (folder / "err").string() +
+                             "'; echo $? >'" + (folder / "status").string() + "'; } | head -1 >/dev/null";
+    ASSERT_EQ(std::system(call.c_str()), 0);
+    EXPECT_EQ(bytes_of(folder / "status"), "1\n");
+    EXPECT_EQ(lines_of(bytes_of(folder / "err")).size(), 1u);
+}
+
+TEST(CommandLine, AnInterruptedRenderIs130AndLeavesNothing) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const TemporaryFolder folder;
+        const Ivory ivory({"render", figure_1, "-o", (folder / "a.png").string(), "--size", "400x300",
+                           "--repeat", "1000000"});
+        wait_until([&] { return files_in(folder.path()) == 1; });  // the temporary one
+        ivory.send(signal);
+        const Finished run = ivory.wait();
+        EXPECT_EQ(run.status, 130) << run.err;
+        EXPECT_EQ(run.err, "");
+        EXPECT_EQ(files_in(folder.path()), 0u);
+    }
+}
+
+TEST(CommandLine, AnInterruptedTraceIs130) {
+    const TemporaryFolder folder;
+    const std::string pipe = (folder / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const Ivory ivory({"trace", figure_1, "--rays", pipe});
+    const int writer = ::open(pipe.c_str(), O_WRONLY);  // waits for the reader
+    ASSERT_EQ(::write(writer, "0 0 8 0 0 -1\n", 13), 13);
+    // What is there is answered before more is waited for.
+    wait_until([&] { return lines_of(ivory.out_so_far()).size() == 2; });
+    ivory.send(SIGINT);
+    const Finished run = ivory.wait();
+    ::close(writer);
+    EXPECT_EQ(run.status, 130);
+    EXPECT_EQ(lines_of(run.out).size(), 2u);
+}
+
+TEST(CommandLine, TraceAnswersInOrderForAnyNumberOfThreads) {
+    const TemporaryFolder folder;
+    std::string rays = "# hits and misses by turns\n\n";
+    for (int n = 0; n < 3000; ++n) {
+        rays += std::to_string(n % 7 * 0.4 - 1.2) + (n % 2 == 0 ? " 0 8 0 0 -1\n" : ",0,8,0,0,-1\r\n");
+    }
+    put_bytes(folder / "rays", rays);
+    std::string first;
+    for (const char* threads : {"1", "2", "6"}) {
+        const Finished run = run_ivory(
+            {"trace", figure_1, "--threads", threads, "--rays", (folder / "rays").string()});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+        EXPECT_EQ(lines_of(run.out).size(), 3001u);
+        if (first.empty()) first = run.out;
+        EXPECT_TRUE(run.out == first) << threads;
+    }
+    const std::vector<std::string> lines = lines_of(first);
+    for (std::size_t k = 8; k < lines.size(); ++k) ASSERT_EQ(lines[k], lines[k - 7]);
+}
+
+TEST(CommandLine, TheLastLineNeedsNoNewline) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "rays", "0 0 8 0 0 -1\n0 0 8 0 0 -1");
+    const Finished run = run_ivory({"trace", figure_1}, {(folder / "rays").string(), ""});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(lines_of(run.out).size(), 3u);
+}
+
+TEST(CommandLine, NoRaysAreNoError) {
+    const Finished run = run_ivory({"trace", figure_1});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.out, columns);
+}
+
+TEST(CommandLine, AnEndlessLineIsRefused) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "rays", "0 0 8 0 0 -1\n" + std::string(3 << 20, ' '));
+    const Finished run = run_ivory({"trace", figure_1, "--rays", (folder / "rays").string()});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("line 2: is longer than 1 MiB"), std::string::npos) << run.err;
+    EXPECT_EQ(lines_of(run.out).size(), 2u);
+}
+
+TEST(CommandLine, RaysThatCannotBeReadAreOne) {
+    const TemporaryFolder folder;
+    for (const std::string& path : {folder.path().string(), (folder / "none").string()}) {
+        const Finished run = run_ivory({"trace", figure_1, "--rays", path});
+        EXPECT_EQ(run.status, 1);
+        EXPECT_NE(run.err.find("cannot be read"), std::string::npos) << run.err;
+    }
+}
+
+TEST(CommandLine, InfoTellsWhatIsSkippedAndWhy) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "s.json", R"({"ivory": 1, "threshold": 0.5, "elements": [
+        {"shape": "point", "position": [0, 0, 0]},
+        {"shape": "point", "position": [1, 0, 0], "visible": false},
+        {"shape": "point", "position": [0, 1, 0], "strength": -1, "name": "bite"},
+        {"shape": "segment", "a": [0, 0, 0], "b": [1, 0, 0], "strength": 0.1}]})");
+    const Finished json = run_ivory({"info", "--json", (folder / "s.json").string()});
+    ASSERT_EQ(json.status, 0) << json.err;
+    const Json info = Json::parse(json.out);
+    EXPECT_EQ(info.at("elements").at("total"), 4);
+    EXPECT_EQ(info.at("elements").at("visible"), 3);
+    EXPECT_EQ(info.at("elements").at("shapes"), Json::parse(R"({"point": 3, "segment": 1})"));
+    ASSERT_EQ(info.at("skipped").size(), 3u);
+    EXPECT_EQ(info.at("skipped")[0].at("name"), "point 2");
+    EXPECT_EQ(info.at("skipped")[0].at("from"), "field");
+    EXPECT_EQ(info.at("skipped")[1].at("name"), "bite");
+    EXPECT_EQ(info.at("skipped")[2].at("element"), 3);
+    EXPECT_EQ(info.at("camera").at("framed"), true);
+    EXPECT_TRUE(info.at("box").contains("lo"));
+
+    const Finished text = run_ivory({"info", (folder / "s.json").string()});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_NE(text.out.find("1 from the field: not visible (point 2)"), std::string::npos);
+    EXPECT_NE(text.out.find("(bite)"), std::string::npos);
+    EXPECT_NE(text.out.find("(segment 1)"), std::string::npos);
+}
+
+// The camera that `info` prints is the one that `render` takes at its own size.
+TEST(CommandLine, InfoAndRenderAgreeOnTheCamera) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "s.json",
+              R"({"ivory": 1, "threshold": 0.5, "elements": [{"shape": "point", "position": [1, 2, 3]}]})");
+    const std::string scene = (folder / "s.json").string();
+    Json info = Json::parse(run_ivory({"info", "--json", scene}).out).at("camera");
+    info.erase("framed");
+    EXPECT_EQ(info, Json::parse(run_ivory({"render", scene, "--stats", "-", "--size", "16x9"}).out)
+                        .at("camera"));
+}
+
+TEST(CommandLine, InfoListsTheMethods) {
+    const Finished run = run_ivory({"info", "--methods"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_TRUE(run.out.starts_with("proved "));
+    EXPECT_NE(run.out.find("bisection "), std::string::npos);
+}
+
+TEST(CommandLine, TheLocaleChangesNothing) {
+    // Where this locale is not installed the test says less, and nothing wrong.
+    ::setenv("LC_ALL", "de_DE.UTF-8", 1);
+    const Finished run = run_ivory({"render", figure_1, "--stats", "-", "--size", "8x8", "--tolerance", "1e-3"});
+    ::unsetenv("LC_ALL");
+    EXPECT_EQ(Json::parse(run.out).at("tolerance"), 1e-3);
+}
+
+}  // namespace
+}  // namespace ivory

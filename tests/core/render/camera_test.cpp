@@ -1,0 +1,196 @@
+// Primary rays by the formula, cones that hold them, and the camera of a scene without one.
+#include "core/render/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "core/render/direction.h"
+#include "core/scene/error.h"
+#include "tests/error_line.h"
+
+namespace ivory {
+namespace {
+
+// 64 bits of mantissa: eleven more than what is tested.
+using Real = long double;
+using Vec3l = Vec3<Real>;
+
+Vec3l widened(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+Real length(const Vec3l& v) { return std::sqrt(dot(v, v)); }
+
+Vec3l normalized(const Vec3l& v) { return Real(1) / length(v) * v; }
+
+Vec3l direction_by_the_formula(const Camera& camera, int width, int height, int i, int j) {
+    const Vec3l forward = normalized(widened(camera.target) - widened(camera.position));
+    const Vec3l right = normalized(cross(forward, widened(camera.up)));
+    const Vec3l top = cross(right, forward);
+    const Real s = std::tan(camera.fov / Real(2) * std::numbers::pi_v<Real> / 180);
+    const Real u = (2 * (i + Real(0.5)) / width - 1) * s * width / height;
+    const Real v = (1 - 2 * (j + Real(0.5)) / height) * s;
+    return normalized(forward + u * right + v * top);
+}
+
+std::vector<Camera> cameras() {
+    return {
+        {{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 40},
+        {{2.2, 2.6, 7.2}, {0.1, 0, -0.3}, {0, 1, 0}, 40},
+        {{-5, 1, 0.5}, {0, 0, 0}, {0.3, 0.2, 5}, 100},
+        {{1e6, 1e6, 1e6}, {1e6 + 1, 1e6, 1e6}, {0, 0, 1}, 12},
+        {{3e-7, 0, 1e-6}, {0, 0, 0}, {0, 1e9, 0}, 60},
+        {{0, 5, 1e-7}, {0, 0, 0}, {0, 1, 0}, 170},
+        {{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 179.9999999},
+        {{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 1e-9},
+    };
+}
+
+TEST(Camera, PrimaryRaysAreThoseOfTheFormula) {
+    constexpr std::array<std::array<int, 2>, 4> sizes{{{1280, 720}, {33, 77}, {1, 1}, {2, 999}}};
+    for (const Camera& camera : cameras()) {
+        const View view = make_view(camera);
+        // An up direction near the line of sight magnifies the rounding of their cross product.
+        const Vec3l forward = normalized(widened(camera.target) - widened(camera.position));
+        const Real tilt = length(cross(forward, normalized(widened(camera.up))));
+        for (const auto& [width, height] : sizes) {
+            for (const int i : {0, width / 3, width - 1}) {
+                for (const int j : {0, height / 2, height - 1}) {
+                    const Ray ray = primary_ray(view, width, height, i, j);
+                    const Vec3l exact = direction_by_the_formula(camera, width, height, i, j);
+                    EXPECT_EQ(ray.origin, camera.position);
+                    EXPECT_LT(length(widened(ray.direction) - exact), 4e-15L * (1 + view.s) / tilt)
+                        << camera.fov << " at " << i << ", " << j;
+                    EXPECT_NEAR(static_cast<double>(length(widened(ray.direction))), 1, 4e-16);
+                }
+            }
+        }
+    }
+}
+
+TEST(Camera, RowsAreCountedFromTheTop) {
+    const View view = make_view({{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 40});
+    EXPECT_GT(primary_ray(view, 8, 8, 0, 0).direction.y, 0);
+    EXPECT_LT(primary_ray(view, 8, 8, 0, 0).direction.x, 0);
+    EXPECT_LT(primary_ray(view, 8, 8, 7, 7).direction.y, 0);
+    EXPECT_GT(primary_ray(view, 8, 8, 7, 7).direction.x, 0);
+}
+
+TEST(Camera, HugeAndTinyDistancesDoNotOverflow) {
+    const View far = make_view({{0, 0, 1e300}, {0, 0, 0}, {0, 1e-300, 0}, 40});
+    EXPECT_EQ(far.forward, (Vec3d{0, 0, -1}));
+    EXPECT_EQ(far.top, (Vec3d{0, 1, 0}));
+    const View near = make_view({{0, 0, 1e-300}, {0, 0, 0}, {0, 1e300, 0}, 40});
+    EXPECT_EQ(near.right, (Vec3d{1, 0, 0}));
+}
+
+TEST(Camera, AFaultyCameraIsRefused) {
+    EXPECT_NE(tests::error_line([] {
+                  static_cast<void>(make_view({{0, 0, 8}, {0, 0, 8}, {0, 1, 0}, 40}));
+              }).find("/target"),
+              std::string::npos);
+    EXPECT_NE(tests::error_line([] {
+                  static_cast<void>(make_view({{0, 0, 8}, {0, 0, 0}, {0, 0, -2}, 40}));
+              }).find("/up"),
+              std::string::npos);
+}
+
+Real sine_between(const Vec3d& a, const Vec3d& b) {
+    const Vec3l x = normalized(widened(a));
+    const Vec3l y = normalized(widened(b));
+    return length(cross(x, y));
+}
+
+TEST(Camera, AConeHoldsTheRaysOfItsRectangle) {
+    constexpr int width = 200, height = 120;
+    for (const Camera& camera : cameras()) {
+        const View view = make_view(camera);
+        for (const PixelRect& rect : {PixelRect{0, 0, 16, 16}, PixelRect{96, 48, 112, 64},
+                                      PixelRect{192, 112, 200, 120}, PixelRect{37, 11, 38, 12},
+                                      PixelRect{64, 0, 128, 64}, PixelRect{0, 0, 200, 120}}) {
+            const Cone cone = cone_around(view, width, height, rect);
+            EXPECT_EQ(cone.apex, camera.position);
+            for (int j = rect.y0; j < rect.y1; ++j) {
+                for (int i = rect.x0; i < rect.x1; ++i) {
+                    const Vec3d d = primary_ray(view, width, height, i, j).direction;
+                    ASSERT_LE(sine_between(cone.axis, d), cone.sine) << i << ", " << j;
+                    ASSERT_TRUE(cone.sine > 1 || dot(cone.axis, d) > 0);
+                }
+            }
+        }
+    }
+}
+
+TEST(Camera, AConeIsNoWiderThanItsCorners) {
+    const View view = make_view({{2.2, 2.6, 7.2}, {0.1, 0, -0.3}, {0, 1, 0}, 40});
+    const PixelRect rect{16, 32, 32, 48};
+    const Cone cone = cone_around(view, 1280, 720, rect);
+    Real widest = 0;
+    for (const int i : {rect.x0, rect.x1 - 1}) {
+        for (const int j : {rect.y0, rect.y1 - 1}) {
+            widest = std::max(
+                widest, sine_between(cone.axis, primary_ray(view, 1280, 720, i, j).direction));
+        }
+    }
+    EXPECT_LT(cone.sine, widest + 3e-14L);
+    EXPECT_LT(cone_around(view, 1280, 720, {5, 5, 6, 6}).sine, 3e-14);
+}
+
+TEST(Camera, AConeOfMoreThanAHemisphereIsEveryDirection) {
+    const View view = make_view({{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 179.9999999});
+    EXPECT_GT(cone_around(view, 64, 64, {0, 0, 64, 64}).sine, 1);
+}
+
+// The sphere around the box touches the nearer planes of the view from inside, at 1.1 times the
+// distance that this takes.
+TEST(Camera, TheDefaultCameraFitsTheSphereIntoTheSmallerAngle) {
+    const Box3 box{{-1, -2, 3}, {4, 1, 5}};
+    const double radius = 0.5 * std::hypot(5, 3, 2);
+    for (const double aspect : {16.0 / 9, 1.0, 9.0 / 16, 0.1}) {
+        const Camera camera = default_camera(box, aspect);
+        EXPECT_EQ(camera.target, (Vec3d{1.5, -0.5, 4}));
+        EXPECT_EQ(camera.fov, 40);
+        EXPECT_EQ(camera.up, (Vec3d{0, 1, 0}));
+        const Vec3d back = camera.position - camera.target;
+        const double distance = std::sqrt(dot(back, back));
+        EXPECT_NEAR(dot(back, unit(Vec3d{0.4, 0.3, 1})), distance, 1e-12 * distance);
+        const double vertical = 20 * std::numbers::pi / 180;
+        const double smaller = std::min(vertical, std::atan(aspect * std::tan(vertical)));
+        EXPECT_NEAR(distance, 1.1 * radius / std::sin(smaller), 1e-12 * distance);
+    }
+}
+
+TEST(Camera, AnEmptySurfaceIsSeenAsTheUnitBox) {
+    const Camera empty = default_camera({}, 1.5);
+    EXPECT_EQ(empty, default_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5));
+    EXPECT_EQ(empty.target, (Vec3d{0, 0, 0}));
+}
+
+TEST(Camera, ABoxThatIsAPointIsStillSeen) {
+    for (const double at : {0.0, 1.0, -1e12}) {
+        const Camera camera = default_camera({{at, at, at}, {at, at, at}}, 1);
+        EXPECT_NO_THROW(static_cast<void>(make_view(camera))) << at;
+    }
+}
+
+TEST(Camera, ABoxBeyondTheDoublesIsRefused) {
+    EXPECT_NE(tests::error_line([] {
+                  static_cast<void>(default_camera({{-1e308, 0, 0}, {1.7e308, 1e308, 1}}, 1));
+              }).find("give it a camera"),
+              std::string::npos);
+}
+
+TEST(Camera, TheScenesOwnCameraIsTaken) {
+    Scene scene;
+    scene.camera = Camera{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 25};
+    EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), *scene.camera);
+    scene.camera.reset();
+    EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), default_camera({}, 2));
+}
+
+}  // namespace
+}  // namespace ivory

@@ -1,0 +1,474 @@
+// The bytes of a picture depend on the picture alone: not on threads, order, tiles or history.
+#include "core/render/render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include "core/render/statistics.h"
+#include "core/trace/trace.h"
+
+namespace ivory {
+namespace {
+
+// Every shape, kernel and sign, some of it out of the picture.
+Scene mixed_scene() {
+    Scene scene;
+    scene.threshold = 0.5;
+    scene.camera = Camera{{0.5, 1, 7}, {0, 0, 0}, {0, 1, 0}, 40};
+    scene.elements = {
+        {.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0.4, 1}, 1.3}, .color = {0.9, 0.7, 0.1}, .width = 0.4},
+        {.skeleton = SegmentSkeleton{{-1.5, -1, 0}, {1.5, 1, 0.5}}, .color = {0.1, 0.4, 0.9}, .width = 0.5},
+        {.skeleton = PointSkeleton{{0.3, 0.9, 0.6}}, .color = {0.8, 0.1, 0.2},
+         .kernel = KernelKind::wyvill, .width = 1.1},
+        {.skeleton = PointSkeleton{{-0.9, 0.8, 0.2}}, .kernel = KernelKind::nishimura, .width = 1.3},
+        {.skeleton = PointSkeleton{{0.4, 0.3, 1}}, .strength = -0.8, .width = 0.5},
+        {.skeleton = PointSkeleton{{3, -2, -40}}, .width = 2},
+        {.skeleton = PointSkeleton{{0, 0, 3}}, .visible = false},
+    };
+    return scene;
+}
+
+constexpr int frame_width = 150, frame_height = 90;  // no multiples of a tile, several regions across 64
+
+Picture picture_of(const Scene& scene, const char* method = "proved", int w = frame_width, int h = frame_height) {
+    Picture picture;
+    picture.field = std::make_shared<const Field>(compile(scene));
+    picture.view = make_view(camera_of(scene, *picture.field, w, h));
+    picture.lighting = make_lighting(scene, picture.view);
+    picture.method = find_method(method);
+    picture.options.tolerance = 1e-6;
+    return picture;
+}
+
+// All that a frame holds, miss by miss and bit by bit.
+std::vector<std::uint64_t> bits_of(const Frame& frame, bool with_color = true) {
+    std::vector<std::uint64_t> bits;
+    for (std::size_t p = 0; p < frame.size(); ++p) {
+        bits.push_back(static_cast<std::uint64_t>(frame.status[p]));
+        if (with_color) bits.push_back(std::bit_cast<std::uint32_t>(frame.color[p]));
+        if (!possibly_hit(frame.status[p])) continue;
+        bits.push_back(std::bit_cast<std::uint64_t>(frame.t_lo[p]));
+        bits.push_back(std::bit_cast<std::uint64_t>(frame.t_hi[p]));
+        if (frame.surface.empty()) continue;
+        for (const Vec3d& v : {frame.surface[p].normal, frame.surface[p].color}) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                bits.push_back(std::bit_cast<std::uint64_t>(v[axis]));
+            }
+        }
+    }
+    return bits;
+}
+
+const std::vector<std::uint64_t>& expected_bits() {
+    static const std::vector<std::uint64_t> bits = [] {
+        Canvas canvas(frame_width, frame_height, true);
+        render(picture_of(mixed_scene()), canvas, {});
+        return bits_of(canvas.frame);
+    }();
+    return bits;
+}
+
+TEST(Render, PixelsAreTheAnswersOfTheirRays) {
+    for (const char* method : {"proved", "bisection"}) {
+        const Picture picture = picture_of(mixed_scene(), method);
+        const ElementList all = all_elements(*picture.field);
+        Canvas canvas(frame_width, frame_height, true);
+        render(picture, canvas, {});
+        std::size_t roots = 0;
+        for (int j = 0; j < frame_height; ++j) {
+            for (int i = 0; i < frame_width; ++i) {
+                const Ray ray = primary_ray(picture.view, frame_width, frame_height, i, j);
+                Counts counts;
+                const Answer answer =
+                    trace(*picture.field, all, ray, *picture.method, picture.options, counts);
+                const std::size_t p = canvas.frame.at(i, j);
+                ASSERT_EQ(canvas.frame.status[p], answer.isolation.status) << i << ", " << j;
+                if (!possibly_hit(answer.isolation.status)) {
+                    ASSERT_EQ(canvas.frame.color[p], picture.lighting.background);
+                    continue;
+                }
+                ++roots;
+                const Interval<double> t = answer.isolation.t;
+                ASSERT_FALSE(is_empty(intersection(canvas.frame.t(p), t))) << i << ", " << j;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    ASSERT_NEAR(canvas.frame.surface[p].normal[axis], answer.surface.normal[axis], 1e-4);
+                    ASSERT_NEAR(canvas.frame.surface[p].color[axis], answer.surface.color[axis], 1e-4);
+                }
+                ASSERT_EQ(canvas.frame.color[p],
+                          shade(picture.lighting, ray.direction, canvas.frame.surface[p]));
+            }
+        }
+        EXPECT_GT(roots, canvas.frame.size() / 10);
+        EXPECT_LT(roots, canvas.frame.size() / 2);
+    }
+}
+
+TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
+    for (const int threads : {1, 2, 4, 7}) {
+        for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+            for (const bool keep_lists : {false, true}) {
+                Canvas canvas(frame_width, frame_height, true);
+                JobSettings settings;
+                settings.threads = threads;
+                settings.order = order;
+                settings.keep_lists = keep_lists;
+                settings.focus_i = threads * 20;
+                settings.focus_j = 85;
+                EXPECT_TRUE(render(picture_of(mixed_scene()), canvas, settings).complete);
+                EXPECT_TRUE(bits_of(canvas.frame) == expected_bits()) << threads;
+            }
+        }
+    }
+}
+
+TEST(Render, BytesDoNotDependOnWhatWasOnTheCanvas) {
+    Canvas canvas(frame_width, frame_height, true);
+    Scene other = mixed_scene();
+    other.threshold = 0.3;
+    JobSettings settings;
+    settings.keep_lists = true;
+    settings.threads = 2;
+    render(picture_of(other), canvas, settings);
+    canvas.forget_lists();
+    render(picture_of(mixed_scene()), canvas, settings);
+    EXPECT_TRUE(bits_of(canvas.frame) == expected_bits());
+    // With the lists of the same field and view, once more.
+    render(picture_of(mixed_scene()), canvas, settings);
+    EXPECT_TRUE(bits_of(canvas.frame) == expected_bits());
+}
+
+// Misses all rays and remembers them.
+class Recorder final : public Method {
+  public:
+    std::string_view name() const override { return "recorder"; }
+    std::string_view proves() const override { return "nothing"; }
+    Isolation isolate(const Field&, const ElementList&, const Ray& ray, const MethodOptions&,
+                      Counts&) const override {
+        const std::lock_guard lock(mutex_);
+        const Vec3d d = ray.direction;
+        ++times_[{d.x, d.y, d.z}];
+        return {Status::claimed_miss, {}};
+    }
+    const std::map<std::array<double, 3>, int>& times() const { return times_; }
+
+  private:
+    mutable std::mutex mutex_;
+    mutable std::map<std::array<double, 3>, int> times_;
+};
+
+TEST(Render, CoarseToFineTracesNoPixelTwice) {
+    Scene scene;
+    scene.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 30};
+    scene.elements = {{.skeleton = PointSkeleton{}, .width = 10}};  // fills the picture
+    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+        const Recorder recorder;
+        Picture picture = picture_of(scene);
+        picture.method = &recorder;
+        Canvas canvas(frame_width, frame_height, false);
+        JobSettings settings;
+        settings.order = order;
+        settings.threads = 2;
+        render(picture, canvas, settings);
+        EXPECT_EQ(recorder.times().size(), canvas.frame.size());
+        for (const auto& [direction, times] : recorder.times()) EXPECT_EQ(times, 1);
+    }
+}
+
+TEST(Render, CoarseToFineDoesTheSameWork) {
+    JobSettings settings;
+    Canvas canvas(frame_width, frame_height, false);
+    const JobReport plain = render(picture_of(mixed_scene()), canvas, settings);
+    settings.order = Order::coarse_to_fine;
+    const JobReport coarse = render(picture_of(mixed_scene()), canvas, settings);
+    EXPECT_EQ(plain.counts.evaluations, coarse.counts.evaluations);
+    EXPECT_EQ(plain.counts.element_evaluations, coarse.counts.element_evaluations);
+    EXPECT_EQ(plain.elements_reached, coarse.elements_reached);
+    EXPECT_EQ(plain.tiles_traced, coarse.tiles_traced);
+    EXPECT_GT(plain.counts.evaluations, 0u);
+}
+
+TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas expected(frame_width, frame_height, false);
+    render(picture, expected, {});
+
+    Canvas canvas(frame_width, frame_height, false);
+    std::vector<std::atomic<int>> stride(canvas.tiles.size());
+    std::vector<std::atomic<int>> inside(canvas.tiles.size());
+    std::atomic<int> wrong{0};
+    JobSettings settings;
+    settings.order = Order::coarse_to_fine;
+    settings.threads = 3;
+    settings.on_tile = [&](const TileNotice& notice) {
+        if (inside[notice.tile]++ != 0) ++wrong;
+        const int before = stride[notice.tile].exchange(notice.stride);
+        if (notice.stride != 1 && notice.stride != (before == 0 ? 8 : before / 2)) ++wrong;
+        if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
+        for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
+            for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
+                const std::size_t p = canvas.frame.at(i, j);
+                if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
+            }
+        }
+        --inside[notice.tile];
+    };
+    render(picture, canvas, settings);
+    EXPECT_EQ(wrong, 0);
+    for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
+}
+
+TEST(Render, TheFocusComesFirst) {
+    Canvas canvas(600, 400, false);
+    Scene scene = mixed_scene();
+    std::vector<PixelRect> seen;
+    JobSettings settings;
+    settings.order = Order::coarse_to_fine;
+    settings.focus_i = 590;
+    settings.focus_j = 10;
+    settings.on_tile = [&](const TileNotice& notice) { seen.push_back(notice.rect); };
+    render(picture_of(scene, "proved", 600, 400), canvas, settings);
+    ASSERT_FALSE(seen.empty());
+    EXPECT_GE(seen.front().x0, 576);
+    EXPECT_LT(seen.front().y0, 64);
+}
+
+TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas expected(frame_width, frame_height, false);
+    render(picture, expected, {});
+    constexpr Rgba8 untouched{1, 2, 3, 4};  // a is 255 in every pixel that is drawn
+
+    for (const int notices : {0, 1, 5, 40, 100, 150, 200}) {
+        for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+            Canvas canvas(frame_width, frame_height, false);
+            for (std::size_t p = 0; p < canvas.frame.size(); ++p) canvas.frame.color[p] = untouched;
+            std::mutex mutex;
+            std::condition_variable reached;
+            int count = 0;
+            JobSettings settings;
+            settings.order = order;
+            settings.threads = 2;
+            settings.on_tile = [&](const TileNotice&) {
+                const std::lock_guard lock(mutex);
+                ++count;
+                reached.notify_all();
+            };
+            FrameJob job(picture, canvas, settings);
+            {
+                std::unique_lock lock(mutex);
+                reached.wait_for(lock, std::chrono::seconds(1),
+                                 [&] { return count >= notices || job.finished(); });
+            }
+            job.cancel();
+            const JobReport report = job.finish();
+            EXPECT_TRUE(job.finished());
+
+            std::size_t done = 0;
+            for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
+                const TileState& tile = canvas.tiles[t];
+                const PixelRect rect = canvas.grid.tiles.rect(t);
+                if (tile.stride == 1) ++done;
+                std::size_t pixels = 0;
+                for (int j = rect.y0; j < rect.y1; ++j) {
+                    for (int i = rect.x0; i < rect.x1; ++i) {
+                        const std::size_t p = canvas.frame.at(i, j);
+                        const bool traced =
+                            tile.stride > 0 && i % tile.stride == 0 && j % tile.stride == 0;
+                        ASSERT_EQ(canvas.frame.color[p],
+                                  traced ? expected.frame.color[p] : untouched);
+                        pixels += traced;
+                    }
+                }
+                EXPECT_EQ(std::accumulate(tile.pixels.begin(), tile.pixels.end(), std::size_t{0}),
+                          pixels);
+            }
+            EXPECT_EQ(report.complete, done == canvas.tiles.size());
+        }
+    }
+}
+
+TEST(Render, AJobThatIsDroppedIsCancelled) {
+    Canvas canvas(2000, 2000, false);
+    { const FrameJob job(picture_of(mixed_scene(), "proved", 2000, 2000), canvas, {}); }
+    std::size_t done = 0;
+    for (const TileState& tile : canvas.tiles) done += tile.stride == 1;
+    EXPECT_LT(done, canvas.tiles.size());
+}
+
+TEST(Render, WhatIsCancelledCanBeCompleted) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas canvas(frame_width, frame_height, true);
+    JobSettings settings;
+    settings.order = Order::coarse_to_fine;
+    settings.keep_lists = true;
+    for (int n = 0; n < 20; ++n) {
+        FrameJob job(picture, canvas, settings);
+        static_cast<void>(job.wait_for(std::chrono::milliseconds(n)));
+        job.cancel();
+        job.finish();
+    }
+    render(picture, canvas, settings);
+    EXPECT_TRUE(bits_of(canvas.frame) == expected_bits());
+}
+
+TEST(Render, OnlySelectedTilesAreTouched) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas expected(frame_width, frame_height, false);
+    render(picture, expected, {});
+    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+        Canvas canvas(frame_width, frame_height, false);
+        JobSettings settings;
+        settings.order = order;
+        settings.threads = 2;
+        settings.selected.resize(canvas.tiles.size());
+        for (std::size_t t = 0; t < canvas.tiles.size(); t += 3) settings.selected[t] = 1;
+        std::mutex mutex;
+        std::set<std::size_t> noticed;
+        settings.on_tile = [&](const TileNotice& notice) {
+            const std::lock_guard lock(mutex);
+            noticed.insert(notice.tile);
+        };
+        const JobReport report = render(picture, canvas, settings);
+        EXPECT_TRUE(report.complete);
+        EXPECT_EQ(report.tiles_traced, noticed.size());
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
+            EXPECT_EQ(canvas.tiles[t].stride, t % 3 == 0 ? 1 : 0);
+            EXPECT_EQ(noticed.contains(t), t % 3 == 0);
+            if (t % 3 != 0) continue;
+            const PixelRect rect = canvas.grid.tiles.rect(t);
+            const std::size_t p = canvas.frame.at(rect.x1 - 1, rect.y1 - 1);
+            EXPECT_EQ(canvas.frame.color[p], expected.frame.color[p]);
+        }
+    }
+}
+
+TEST(Render, ShadingAgainEqualsAFullRender) {
+    Scene recolored = mixed_scene();
+    recolored.background = {0.5, 0.4, 0.3};
+    recolored.elements[0].color = {0, 0.3, 0.2};
+    recolored.lights = {Light{{1, 2, 3}, {1, 0.8, 0.6}, 0.9, false}};
+    Canvas expected(frame_width, frame_height, true);
+    render(picture_of(recolored), expected, {});
+
+    for (const bool keep_lists : {false, true}) {
+        Canvas canvas(frame_width, frame_height, true);
+        JobSettings settings;
+        settings.keep_lists = keep_lists;
+        settings.threads = 2;
+        render(picture_of(mixed_scene()), canvas, settings);
+        settings.task = Task::shade;
+        const JobReport report = render(picture_of(recolored), canvas, settings);
+        EXPECT_TRUE(report.complete);
+        EXPECT_EQ(report.counts.evaluations, 0u);
+        EXPECT_TRUE(bits_of(canvas.frame) == bits_of(expected.frame));
+    }
+}
+
+TEST(Render, TracingWithoutShadingGivesTheSameAnswers) {
+    Canvas canvas(frame_width, frame_height, true);
+    JobSettings settings;
+    settings.task = Task::trace;
+    const Picture picture = picture_of(mixed_scene());
+    render(picture, canvas, settings);
+    Canvas shaded(frame_width, frame_height, true);
+    render(picture, shaded, {});
+    EXPECT_TRUE(bits_of(canvas.frame, false) == bits_of(shaded.frame, false));
+    settings.task = Task::shade;
+    render(picture, canvas, settings);
+    EXPECT_TRUE(bits_of(canvas.frame) == bits_of(shaded.frame));
+}
+
+TEST(Render, StatisticsCountEveryPixelOnce) {
+    Canvas canvas(frame_width, frame_height, false);
+    JobSettings settings;
+    settings.threads = 2;
+    const JobReport report = render(picture_of(mixed_scene()), canvas, settings);
+    const PixelStatistics statistics = pixel_statistics(canvas);
+    std::array<std::uint64_t, 5> pixels{};
+    double widest = 0;
+    for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+        ++pixels[static_cast<std::size_t>(canvas.frame.status[p])];
+        if (canvas.frame.status[p] == Status::hit) {
+            widest = std::max(widest, width(canvas.frame.t(p)));
+        }
+    }
+    EXPECT_EQ(statistics.pixels, pixels);
+    EXPECT_EQ(statistics.enclosure_width_max, widest);
+    EXPECT_EQ(statistics.tiles, 10u * 6u);
+    EXPECT_EQ(report.tiles_traced, statistics.tiles);
+    EXPECT_GT(statistics.empty_tiles, 0u);
+    EXPECT_LT(statistics.empty_tiles, statistics.tiles);
+    EXPECT_GE(report.elements_reached, 5u);
+    EXPECT_LE(report.elements_reached, 6u);  // one of the seven is invisible
+    EXPECT_GE(report.shade_share, 0);
+    EXPECT_LE(report.shade_share, 1);
+}
+
+TEST(Render, AnEmptySceneIsAllBackground) {
+    Scene scene;
+    Canvas canvas(33, 20, true);
+    const JobReport report = render(picture_of(scene, "proved", 33, 20), canvas, {});
+    const PixelStatistics statistics = pixel_statistics(canvas);
+    EXPECT_EQ(statistics.pixels[static_cast<std::size_t>(Status::miss)], 33u * 20u);
+    EXPECT_EQ(statistics.empty_tiles, statistics.tiles);
+    EXPECT_EQ(report.counts.evaluations, 0u);
+    EXPECT_EQ(report.elements_reached, 0u);
+    for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+        ASSERT_EQ(canvas.frame.color[p], to_srgb(scene.background));
+    }
+}
+
+TEST(Render, OnePixelIsAPicture) {
+    Canvas canvas(1, 1, false);
+    JobSettings settings;
+    settings.threads = 8;
+    settings.order = Order::coarse_to_fine;
+    Scene scene;
+    scene.elements = {{.skeleton = PointSkeleton{}}};
+    EXPECT_TRUE(render(picture_of(scene, "proved", 1, 1), canvas, settings).complete);
+    EXPECT_EQ(canvas.frame.status[0], Status::hit);
+}
+
+class Exhausted final : public Method {
+  public:
+    std::string_view name() const override { return "exhausted"; }
+    std::string_view proves() const override { return "nothing"; }
+    Isolation isolate(const Field&, const ElementList&, const Ray&, const MethodOptions&,
+                      Counts&) const override {
+        throw std::bad_alloc();
+    }
+};
+
+TEST(Render, WhatAWorkerThrowsReachesTheCaller) {
+    const Exhausted exhausted;
+    Picture picture = picture_of(mixed_scene());
+    picture.method = &exhausted;
+    Canvas canvas(frame_width, frame_height, false);
+    JobSettings settings;
+    settings.threads = 3;
+    settings.order = Order::coarse_to_fine;
+    EXPECT_THROW(render(picture, canvas, settings), std::bad_alloc);
+}
+
+TEST(Render, ProgressRunsFromNothingToAll) {
+    Canvas canvas(frame_width, frame_height, false);
+    FrameJob job(picture_of(mixed_scene()), canvas, {});
+    EXPECT_GE(job.progress(), 0);
+    while (!job.wait_for(std::chrono::milliseconds(1))) EXPECT_LE(job.progress(), 1);
+    EXPECT_EQ(job.progress(), 1);
+    EXPECT_TRUE(job.finish().complete);
+}
+
+}  // namespace
+}  // namespace ivory
