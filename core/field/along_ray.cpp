@@ -1,5 +1,7 @@
 #include "core/field/along_ray.h"
 
+#include "core/interval/quick.h"
+
 namespace ivory {
 namespace {
 
@@ -12,8 +14,9 @@ bool usable(double kappa, double reach, double span) {
     return kappa > 1e-100 && kappa < 1e100 && reach < 1e100 && kappa * span < 1e100;
 }
 
-// (o - c) + t d with one rounding, nearly: the sum and the product without error (Knuth's TwoSum, the
-// product's low part by fma), the low parts added last. Within u |v| + 8 u^2 (|o - c| + |t d|) of exact.
+// (o - c) + t d with one rounding, nearly: the sum and the product without error (Knuth's TwoSum,
+// the product's low part by fma), the low parts added last. Within u |v| + 8 u^2 (|o - c| + |t d|)
+// of exact.
 double offset(double o, double c, double t, double d) {
     const double difference = o - c;
     const double back = difference - o;
@@ -29,13 +32,13 @@ double offset(double o, double c, double t, double d) {
 // The vector v(t) from a point c of the skeleton to p(t), in units of the element's width.
 struct Relative {
     Vec3d origin, ray_direction, c;
-    double scale;         // 1 / w, within u
-    Vec3d offset_vector;  // (o - c) / w, each component within 3.01 u
-    Vec3d direction;      // d / w, each component within 2.01 u
+    double scale;                        // 1 / w, within u
+    Vec3d offset_vector;                 // (o - c) / w, each component within 3.01 u
+    Vec3d direction;                     // d / w, each component within 2.01 u
     double offset_norm, direction_norm;  // 1-norms, which exceed the Euclidean ones
 
-    // v(t), each component within 3.01 u of itself and far_error(t): however far the ray comes from, what
-    // counts is how near it is at t.
+    // v(t), each component within 3.01 u of itself and far_error(t): however far the ray comes
+    // from, what counts is how near it is at t.
     [[nodiscard]] Vec3d at(double t) const {
         return {scale * offset(origin.x, c.x, t, ray_direction.x),
                 scale * offset(origin.y, c.y, t, ray_direction.y),
@@ -54,8 +57,8 @@ Relative relative_to(const Vec3d& c, double width, const Vec3d& origin, const Ve
     return r;
 }
 
-// The t of the span nearest to the foot of the perpendicular on offset + t direction. Any t of the span is
-// right as a reference; this one is the sharpest.
+// The t of the span nearest to the foot of the perpendicular on offset + t direction. Any t of the
+// span is right as a reference; this one is the sharpest.
 double foot(const Vec3d& offset_vector, const Vec3d& direction, const Interval<double>& span) {
     const double square = dot(direction, direction);
     const double t = square > 0 ? -dot(offset_vector, direction) / square : span.lo;
@@ -75,8 +78,8 @@ MovingSquare moving_square(double reference, const Vec3d& v, const Vec3d& direct
     q.eta = eta + 1e-300;
     q.nu = nu + 1e-300;
 
-    // |v|^2 = (least on the line) + (distance from the foot, measured along v's path)^2. Where the slope at
-    // an end of the span points out of it, the least on the span is at that end.
+    // |v|^2 = (least on the line) + (distance from the foot, measured along v's path)^2. Where the
+    // slope at an end of the span points out of it, the least on the span is at that end.
     const SquareAt here = q.at(reference);
     const bool falls = here.ds + here.ds_radius <= 0;
     const bool rises = here.ds - here.ds_radius >= 0;
@@ -94,12 +97,13 @@ MovingSquare moving_square(double reference, const Vec3d& v, const Vec3d& direct
 MovingSquare from_point(const Relative& r, const Interval<double>& span) {
     const double reference = foot(r.offset_vector, r.direction, span);
     const Vec3d v = r.at(reference);
-    return moving_square(reference, v, r.direction, span, 4 * u * one_norm(v) + r.far_error(reference),
-                         3 * u * r.direction_norm);
+    return moving_square(reference, v, r.direction, span,
+                         4 * u * one_norm(v) + r.far_error(reference), 3 * u * r.direction_norm);
 }
 
-// The part of v perpendicular to a unit vector n known within 8 u. The part along n, a = v.n, errs by at most
-// (3.01 + 8 + 3.01) u |v|, v - a n by (3.01 + 14.1 + 8 + 2.02) u |v| < 28 u |v|; the direction likewise.
+// The part of v perpendicular to a unit vector n known within 8 u. The part along n, a = v.n, errs
+// by at most (3.01 + 8 + 3.01) u |v|, v - a n by (3.01 + 14.1 + 8 + 2.02) u |v| < 28 u |v|; the
+// direction likewise.
 struct FromAxis {
     MovingSquare across;
     double height, rise;  // v_r.n and direction.n, within across' eta and nu
@@ -108,22 +112,25 @@ struct FromAxis {
 FromAxis from_axis(const Relative& r, const Vec3d& n, const Interval<double>& span) {
     const double rise = dot(r.direction, n);
     const Vec3d direction = r.direction - rise * n;
-    const double reference =
-        foot(r.offset_vector - dot(r.offset_vector, n) * n, direction, span);
+    const double reference = foot(r.offset_vector - dot(r.offset_vector, n) * n, direction, span);
     const Vec3d v = r.at(reference);
     const double height = dot(v, n);
-    return {moving_square(reference, v - height * n, direction, span,
-                          32 * u * one_norm(v) + 2 * r.far_error(reference),
-                          32 * u * r.direction_norm),
-            height, rise};
+    return {
+        moving_square(reference, v - height * n, direction, span,
+                      32 * u * one_norm(v) + 2 * r.far_error(reference), 32 * u * r.direction_norm),
+        height, rise};
 }
+
+// t1 - t0, rounded up.
+double up_to(double t1, double t0) { return quick::up(t1 - t0); }
 
 // {t: |v(t)|^2 <= cut}, enclosed from outside.
 Interval<double> sublevel(const MovingSquare& q, double cut) {
     if (q.least > cut) return Interval<double>::empty_set();
     const double speed = q.kappa * (1 - 16 * u) - q.nu - 1e-149;
     if (!(speed > 0.5 * q.kappa)) return Interval<double>::entire();
-    // |v|^2 = least + |e|^2 (t - t0)^2, t0 the foot: t0 = t_r - (v.e) / |e|^2 within its slope's error.
+    // |v|^2 = least + |e|^2 (t - t0)^2, t0 the foot: t0 = t_r - (v.e) / |e|^2 within its slope's
+    // error.
     const SquareAt here = q.at(q.reference);
     const double half = std::sqrt(cut) / speed;
     const double centre = q.reference - 0.5 * here.ds / q.gamma;
@@ -138,7 +145,8 @@ Vec3d unit(const Vec3d& n) {
     const double largest = std::max(std::abs(n.x), std::max(std::abs(n.y), std::abs(n.z)));
     int exponent = 0;
     std::frexp(largest, &exponent);
-    const Vec3d m{std::ldexp(n.x, -exponent), std::ldexp(n.y, -exponent), std::ldexp(n.z, -exponent)};
+    const Vec3d m{std::ldexp(n.x, -exponent), std::ldexp(n.y, -exponent),
+                  std::ldexp(n.z, -exponent)};
     const double length = std::sqrt(dot(m, m));
     return {m.x / length, m.y / length, m.z / length};
 }
@@ -151,7 +159,8 @@ bool set_point(ElementAlongRay& e, const Relative& r, double extra_error,
     piece.square = from_point(r, span);
     if (extra_error > 0) {
         piece.square.eta += extra_error;
-        const double root = std::max(std::sqrt(piece.square.least) * (1 - 4 * u) - extra_error, 0.0);
+        const double root =
+            std::max(std::sqrt(piece.square.least) * (1 - 4 * u) - extra_error, 0.0);
         piece.square.least = root * root * (1 - 4 * u);
         piece.square.vertex = 0;
     }
@@ -160,9 +169,10 @@ bool set_point(ElementAlongRay& e, const Relative& r, double extra_error,
     return usable(piece.square.kappa, r.offset_norm + piece.square.rho, mag(span));
 }
 
-// The foot of p(t) on the line A + lambda M is lambda(t) = (v(t).M) / |M|^2, affine in t. Where it is below
-// 0 or above 1 the end is nearest, between the two the line is; at lambda = 0 and 1 the squares meet with
-// equal slopes. The times of the two changes are known within an error, so the pieces overlap by it.
+// The foot of p(t) on the line A + lambda M is lambda(t) = (v(t).M) / |M|^2, affine in t. Where it
+// is below 0 or above 1 the end is nearest, between the two the line is; at lambda = 0 and 1 the
+// squares meet with equal slopes. The times of the two changes are known within an error, so the
+// pieces overlap by it.
 bool set_segment(ElementAlongRay& e, const Field& field, std::size_t i, const Vec3d& origin,
                  const Vec3d& direction, const Interval<double>& span, double cut) {
     const Vec3d a = field.a(i), b = field.b(i);
@@ -178,8 +188,8 @@ bool set_segment(ElementAlongRay& e, const Field& field, std::size_t i, const Ve
 
     const double lambda0 = dot(from_a.offset_vector, m) / mm;
     const double lambda1 = dot(from_a.direction, m) / mm;
-    // |d lambda| over the span: the data err by 3.01 u each, the dot products by 3 u, the quotient by 5 u,
-    // the product with t and the sum by 2 u, all of (|offset| + |t direction|) / |M|.
+    // |d lambda| over the span: the data err by 3.01 u each, the dot products by 3 u, the quotient
+    // by 5 u, the product with t and the sum by 2 u, all of (|offset| + |t direction|) / |M|.
     const double lambda_error =
         32 * u * (from_a.offset_norm + mag(span) * from_a.direction_norm) / length + 1e-300;
     const double at_start = lambda0 + lambda1 * span.lo;
@@ -187,7 +197,8 @@ bool set_segment(ElementAlongRay& e, const Field& field, std::size_t i, const Ve
     const Interval<double> lambda{std::min(at_start, at_end) - lambda_error,
                                   std::max(at_start, at_end) + lambda_error};
 
-    // The time at which lambda(t) = value, within the error; the whole span where lambda hardly moves.
+    // The time at which lambda(t) = value, within the error; the whole span where lambda hardly
+    // moves.
     const auto crossing = [&](double value) -> Interval<double> {
         const double speed = std::abs(lambda1);
         if (!(speed * (span.hi - span.lo) > 8 * lambda_error)) return span;
@@ -251,7 +262,8 @@ bool set_circle(ElementAlongRay& e, const Field& field, std::size_t i, const Vec
     const MovingSquare whole = from_point(r, span);
     c.curvature = whole.curvature();
 
-    // rho_0^2 = |v|^2 - (v.e)^2 / |e|^2 at t_r; only an upper bound where the ray hardly moves across.
+    // rho_0^2 = |v|^2 - (v.e)^2 / |e|^2 at t_r; only an upper bound where the ray hardly moves
+    // across.
     const SquareAt here = q.at(q.reference);
     const double speed = q.kappa * (1 - 16 * u) - q.nu - 1e-149;
     if (speed > 0.999 * q.kappa) {
@@ -302,59 +314,60 @@ double least_square(const ElementAlongRay& e, const Interval<double>& span) {
 
 CircleAlongRay::At CircleAlongRay::at(double t) const {
     At at;
-    const SquareAt square = across.at(t);
+    at.square = across.at(t);
     const double tau = t - across.reference;
-    const double error = across.eta + across.nu * std::abs(tau) +
-                         8 * u * (std::abs(height) + std::abs(tau * rise));
+    const double error =
+        across.eta + across.nu * std::abs(tau) + 8 * u * (std::abs(height) + std::abs(tau * rise));
     const double h = height + tau * rise;
     at.h = {h - error, h + error};
-    at.rho = sqrt(square.value());
+    at.rho = quick::sqrt(at.square.value());
     // |rho'| <= |e|, whatever rho is; the quotient is sharper away from the axis.
     const double speed = across.kappa + across.nu;
     at.drho = {-speed, speed};
     if (at.rho.lo > 0) {
-        at.drho = intersection(at.drho, Interval<double>(0.5) * square.slope() / at.rho);
+        const Interval<double> quotient = quick::div(quick::scale(0.5, at.square.slope()), at.rho);
+        at.drho = {std::max(quotient.lo, -speed), std::min(quotient.hi, speed)};
         if (is_empty(at.drho)) at.drho = {-speed, speed};
     }
     const Interval<double> dh{rise - across.nu, rise + across.nu};
-    const Interval<double> off = at.rho - radius;
-    at.s = sqr(off) + sqr(at.h);
-    at.ds = Interval<double>(2.0) * (off * at.drho + at.h * dh);
+    const Interval<double> off = quick::sub(at.rho, radius);
+    at.s = quick::add(quick::sqr(off), quick::sqr(at.h));
+    at.ds = quick::scale(2, quick::add(quick::mul(off, at.drho), quick::mul(at.h, dh)));
     return at;
 }
 
 CircleAlongRay::Over CircleAlongRay::over(double t0, double t1, const At& at0,
                                           const At& at1) const {
-    const SquareAt square0 = across.at(t0), square1 = across.at(t1);
-    const Interval<double> across_range = across.over(square0, square1);
-    const Interval<double> rho = sqrt(across_range);
+    const Interval<double> rho = quick::sqrt(across.over(at0.square, at1.square));
     const Interval<double> drho{at0.drho.lo, at1.drho.hi};  // rho is convex
     const Interval<double> h = hull(at0.h, at1.h);
     const Interval<double> dh{rise - across.nu, rise + across.nu};
-    const Interval<double> off = rho - radius;
+    const Interval<double> off = quick::sub(rho, radius);
 
     // rho'' = gamma rho_0^2 / rho^3, unbounded where rho can be 0.
-    const Interval<double> gamma = Interval<double>(0.5) * across.curvature();
-    const Interval<double> ddrho =
-        rho.lo > 0 ? gamma * least_across / (rho * sqr(rho)) : Interval<double>(0.0, infinity<double>);
+    const Interval<double> bend =
+        rho.lo > 0 ? quick::div(quick::mul(quick::scale(0.5, across.curvature()), least_across),
+                                quick::mul(rho, quick::sqr(rho)))
+                   : Interval<double>(0.0, infinity<double>);
     Over range;
-    range.dds = curvature - Interval<double>(2.0) * radius * ddrho;
-    const Interval<double> window = Interval<double>(t1) - Interval<double>(t0);
-    const Interval<double> elapsed{0.0, window.hi};
+    range.dds = quick::sub(curvature, quick::scale(2, quick::mul(radius, bend)));
+    const Interval<double> elapsed{0.0, up_to(t1, t0)};
 
-    range.ds = Interval<double>(2.0) * (off * drho + h * dh);
+    range.ds = quick::scale(2, quick::add(quick::mul(off, drho), quick::mul(h, dh)));
     if (range.dds.lo > -infinity<double>) {
-        range.ds = intersection(range.ds, intersection(at0.ds + range.dds * elapsed,
-                                                       at1.ds - range.dds * elapsed));
+        const Interval<double> gain = quick::mul(range.dds, elapsed);
+        range.ds = intersection(range.ds,
+                                intersection(quick::add(at0.ds, gain), quick::sub(at1.ds, gain)));
     }
-    range.s = sqr(off) + sqr(h);
+    range.s = quick::add(quick::sqr(off), quick::sqr(h));
     if (range.ds.lo >= 0) {
         range.s = intersection(range.s, Interval<double>(at0.s.lo, at1.s.hi));
     } else if (range.ds.hi <= 0) {
         range.s = intersection(range.s, Interval<double>(at1.s.lo, at0.s.hi));
     } else {
-        range.s = intersection(range.s, intersection(at0.s + range.ds * elapsed,
-                                                     at1.s - range.ds * elapsed));
+        const Interval<double> gain = quick::mul(range.ds, elapsed);
+        range.s =
+            intersection(range.s, intersection(quick::add(at0.s, gain), quick::sub(at1.s, gain)));
     }
     return range;
 }

@@ -30,8 +30,8 @@ double box_distance(const Box3& a, const Box3& b) {
     return std::sqrt(square) * (1 - 16 * u);
 }
 
-// An upper bound of f over a box: every positive element at its least distance, estimated by that of its
-// skeleton's box; the negative ones carve nothing.
+// An upper bound of f over a box: every positive element at its least distance, estimated by that
+// of its skeleton's box; the negative ones carve nothing.
 bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, const Box3& box) {
     double sum = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -46,19 +46,20 @@ bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, c
 }  // namespace
 
 std::size_t count_positive(const Field& field) {
-    return static_cast<std::size_t>(
-        std::count_if(field.strength.begin(), field.strength.end(), [](double b) { return b > 0; }));
+    return static_cast<std::size_t>(std::count_if(field.strength.begin(), field.strength.end(),
+                                                  [](double b) { return b > 0; }));
 }
 
 double reach(const Field& field, std::size_t i, std::size_t positive) {
     const double n = static_cast<double>(positive);
     if (field.strength[i] < 0 || certainly_low(field, i, 0, n)) return -1;
-    // The least s found for which the field is certainly low: Blinn's has a closed form, to be confirmed;
-    // the others end at 1 and are halved towards their level.
+    // The least s found for which the field is certainly low: Blinn's has a closed form, to be
+    // confirmed; the others end at 1 and are halved towards their level.
     double s = 1;
     if (field.kernel[i] == KernelKind::blinn) {
         s = std::fmax(std::log(n) + std::log(field.strength[i]) - std::log(field.threshold), 0.0);
-        for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2) s = s * (1 + pad) + pad;
+        for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2)
+            s = s * (1 + pad) + pad;
     } else {
         double lo = 0;
         for (int step = 0; step < 60; ++step) {
@@ -81,7 +82,8 @@ Box3 skeleton_box(const Field& field, std::size_t i) {
     const double largest = std::fmax(std::abs(b.x), std::fmax(std::abs(b.y), std::abs(b.z)));
     int exponent = 0;
     std::frexp(largest, &exponent);
-    const Vec3d n{std::ldexp(b.x, -exponent), std::ldexp(b.y, -exponent), std::ldexp(b.z, -exponent)};
+    const Vec3d n{std::ldexp(b.x, -exponent), std::ldexp(b.y, -exponent),
+                  std::ldexp(b.z, -exponent)};
     const double length = std::sqrt(dot(n, n));
     Box3 box;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -115,7 +117,8 @@ Box3 shrunk_box(const Field& field, const Box3& box) {
     for (std::size_t i = 0; i < field.size(); ++i) skeletons.push_back(skeleton_box(field, i));
 
     Box3 rest = box;
-    // A slab is cut into cells across the face, since one box over the whole face would be near everything.
+    // A slab is cut into cells across the face, since one box over the whole face would be near
+    // everything.
     constexpr int cells = 6;
     const auto slab_is_outside = [&](std::size_t axis, double from, double to) {
         const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
@@ -141,8 +144,7 @@ Box3 shrunk_box(const Field& field, const Box3& box) {
         const double finest = step / 8;
         while (step >= finest && step > 0) {
             const bool from_below = face % 2 == 0;
-            const double edge =
-                from_below ? rest.lo[axis] + step : rest.hi[axis] - step;
+            const double edge = from_below ? rest.lo[axis] + step : rest.hi[axis] - step;
             if (!(rest.lo[axis] < edge && edge < rest.hi[axis])) break;
             if (from_below ? slab_is_outside(axis, rest.lo[axis], edge)
                            : slab_is_outside(axis, edge, rest.hi[axis])) {

@@ -42,13 +42,14 @@ Field compile(const Scene& scene) {
             field.source.push_back(static_cast<std::uint32_t>(i));
         }
     }
-    // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite support
-    // ends at 1.
+    // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
+    // support ends at 1.
     const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
     for (std::size_t i = 0; i < field.size(); ++i) {
         const double least = share / std::abs(field.strength[i]);
         field.cut.push_back(field.kernel[i] != KernelKind::blinn ? 1
-                            : least < 1 ? std::min(-std::log(least), 700.0) : 0);
+                            : least < 1                          ? std::min(-std::log(least), 700.0)
+                                                                 : 0);
     }
     field.least_width =
         field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());

@@ -1,5 +1,6 @@
 // The compiled field: f(p) = sum of F_i(p) - T over the visible elements, as a structure of arrays.
-// F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/field/kernel.h, distances in core/field/skeleton.h.
+// F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/field/kernel.h, distances in
+// core/field/skeleton.h.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +30,8 @@ struct Field {
     std::vector<double> radius;         // circle; otherwise 0
     std::vector<Color> color;           // linear RGB
     std::vector<std::uint32_t> source;  // index in Scene::elements
-    // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an interval:
-    // |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
+    // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an
+    // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
     std::vector<double> cut;
 
     // The box around all balls d_i <= reach_i, and that box shrunk: all of {f >= 0} lies in either,

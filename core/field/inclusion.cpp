@@ -1,5 +1,7 @@
 #include "core/field/inclusion.h"
 
+#include "core/interval/quick.h"
+
 namespace ivory {
 namespace {
 
@@ -23,7 +25,8 @@ Interval<double> slope_times(const SquareAt& at, const Interval<double>& k) {
 }
 
 // (s'^2 - s'') k; the difference cancels, so its rounding is counted by its terms.
-Interval<double> bend_times(const SquareAt& at, const Interval<double>& c2, const Interval<double>& k) {
+Interval<double> bend_times(const SquareAt& at, const Interval<double>& c2,
+                            const Interval<double>& k) {
     const double steepest = std::abs(at.ds) + at.ds_radius;
     const double flattest = std::max(std::abs(at.ds) - at.ds_radius, 0.0);
     const double most = steepest * steepest, fewest = flattest * flattest;
@@ -34,7 +37,8 @@ Interval<double> bend_times(const SquareAt& at, const Interval<double>& c2, cons
 // Blinn's kernel along a parabola s = least + c (t - t_0)^2: with x = s', c2 = s'' = 2 c,
 //   k   = exp(-s)              extremum at x = 0: exp(-least)
 //   k'  = -x exp(-s)           extrema at x^2 = c2: -+ sqrt(c2) exp(-1/2 - least)
-//   k'' = (x^2 - c2) exp(-s)   extrema at x = 0: -c2 exp(-least), at x^2 = 3 c2: 2 c2 exp(-3/2 - least)
+//   k'' = (x^2 - c2) exp(-s)   extrema at x = 0: -c2 exp(-least), at x^2 = 3 c2: 2 c2 exp(-3/2 -
+//   least)
 // (a one-dimensional Gaussian; x rises with t, so each range is that of its ends and of the extrema
 // between them).
 Terms blinn_parabola(const MovingSquare& square, double peak, double t0, double t1) {
@@ -52,12 +56,15 @@ Terms blinn_parabola(const MovingSquare& square, double peak, double t0, double 
     Interval<double> slope = hull(slope0, slope1);
     const double steepest = std::sqrt(c2.hi) * (1 + 4 * u);  // >= sqrt(c2)
     const double flattest = std::sqrt(c2.lo) * (1 - 4 * u);  // <= sqrt(c2)
-    // exp(-least) is the value at the foot on the whole line, even if that lies outside of the window.
+    // exp(-least) is the value at the foot on the whole line, even if that lies outside of the
+    // window.
     const auto extreme = [&](double factor) {
         return std::min(factor * exp_minus(square.vertex, 0).hi, k.value.hi) * (1 + 8 * u);
     };
-    if (x0 < steepest && x1 > flattest) slope.hi = std::max(slope.hi, steepest * extreme(0.60653065971263345));
-    if (x0 < -flattest && x1 > -steepest) slope.lo = std::min(slope.lo, -steepest * extreme(0.60653065971263345));
+    if (x0 < steepest && x1 > flattest)
+        slope.hi = std::max(slope.hi, steepest * extreme(0.60653065971263345));
+    if (x0 < -flattest && x1 > -steepest)
+        slope.lo = std::min(slope.lo, -steepest * extreme(0.60653065971263345));
     k.left_slope = -slope0;
     k.slope = -slope;
 
@@ -74,19 +81,31 @@ Terms blinn_parabola(const MovingSquare& square, double peak, double t0, double 
     return k;
 }
 
+// exp(-s) over a thin [s], by one exponential.
+Interval<double> blinn_over(const Interval<double>& s) {
+    const double middle = midpoint(s);
+    return exp_minus(middle, std::max(s.hi - middle, middle - s.lo) * (1 + 4 * u));
+}
+
 // Any kernel, from ranges of s, s' and s'': k(s(t))' = k' s', k(s(t))'' = k'' s'^2 + k' s''.
 Terms composed(KernelKind kernel, const Interval<double>& s0, const Interval<double>& ds0,
                const Interval<double>& s1, const Interval<double>& s, const Interval<double>& ds,
                const Interval<double>& dds) {
     Terms k;
-    const KernelRange at0 = kernel_range(kernel, s0);
     const KernelRange range = kernel_range(kernel, s);
-    k.left = at0.k;
-    k.left_slope = at0.dk * ds0;
-    k.right = kernel_over(kernel, s1);
+    if (kernel == KernelKind::blinn) {
+        k.left = blinn_over(s0);
+        k.right = blinn_over(s1);
+        k.left_slope = quick::mul(-k.left, ds0);
+    } else {
+        k.left = kernel_over(kernel, s0);
+        k.right = kernel_over(kernel, s1);
+        k.left_slope =
+            quick::mul({kernel_slope_at(kernel, s0.lo).lo, kernel_slope_at(kernel, s0.hi).hi}, ds0);
+    }
     k.value = range.k;
-    k.slope = range.dk * ds;
-    k.curvature = range.ddk * sqr(ds) + range.dk * dds;
+    k.slope = quick::mul(range.dk, ds);
+    k.curvature = quick::add(quick::mul(range.ddk, quick::sqr(ds)), quick::mul(range.dk, dds));
     return k;
 }
 
@@ -99,13 +118,13 @@ Terms parabola(KernelKind kernel, const MovingSquare& square, double peak, doubl
 }
 
 Terms hull(const Terms& a, const Terms& b) {
-    return {hull(a.left, b.left),   hull(a.right, b.right), hull(a.value, b.value),
-            hull(a.left_slope, b.left_slope), hull(a.slope, b.slope),
-            hull(a.curvature, b.curvature)};
+    return {hull(a.left, b.left),   hull(a.right, b.right),
+            hull(a.value, b.value), hull(a.left_slope, b.left_slope),
+            hull(a.slope, b.slope), hull(a.curvature, b.curvature)};
 }
 
-// Each piece over the part of the window in which it may be the nearest; s and s' pass continuously from
-// piece to piece, s'' jumps, so the hull of the pieces' ranges encloses all three.
+// Each piece over the part of the window in which it may be the nearest; s and s' pass continuously
+// from piece to piece, s'' jumps, so the hull of the pieces' ranges encloses all three.
 Terms squares(const ElementAlongRay& e, double t0, double t1) {
     Terms sum;  // all empty
     for (std::size_t i = 0; i < e.piece_count; ++i) {
@@ -134,16 +153,22 @@ Terms unbounded() {
 
 Terms element_over(const ElementAlongRay& e, double t0, double t1) {
     switch (e.form) {
-        case ElementAlongRay::Form::squares: return squares(e, t0, t1);
-        case ElementAlongRay::Form::circle: return circle(e, t0, t1);
-        case ElementAlongRay::Form::unbounded: break;
+        case ElementAlongRay::Form::squares:
+            return squares(e, t0, t1);
+        case ElementAlongRay::Form::circle:
+            return circle(e, t0, t1);
+        case ElementAlongRay::Form::unbounded:
+            break;
     }
     return unbounded();
 }
 
 Interval<double> element_at(const ElementAlongRay& e, double t) {
     if (e.form == ElementAlongRay::Form::unbounded) return {0.0, 1.0};
-    if (e.form == ElementAlongRay::Form::circle) return kernel_over(e.kernel, e.circle.at(t).s);
+    if (e.form == ElementAlongRay::Form::circle) {
+        const Interval<double> s = e.circle.at(t).s;
+        return e.kernel == KernelKind::blinn ? blinn_over(s) : kernel_over(e.kernel, s);
+    }
     Interval<double> k = Interval<double>::empty_set();
     for (std::size_t i = 0; i < e.piece_count; ++i) {
         const Piece& piece = e.pieces[i];
@@ -155,9 +180,9 @@ Interval<double> element_at(const ElementAlongRay& e, double t) {
     return k;
 }
 
-// A sum of intervals in plain doubles. n terms, each b k with one rounding, added one by one, err by at
-// most (n + 2) u times the sum of their magnitudes, which `finish` subtracts and adds. A term that is
-// unbounded on one side leaves the other side's bound alone.
+// A sum of intervals in plain doubles. n terms, each b k with one rounding, added one by one, err
+// by at most (n + 2) u times the sum of their magnitudes, which `finish` subtracts and adds. A term
+// that is unbounded on one side leaves the other side's bound alone.
 class Sum {
   public:
     void add(double strength, const Interval<double>& k) {
@@ -225,9 +250,12 @@ Enclosure FieldAlongRay::over(double t0, double t1) const {
     }
     const std::size_t terms = elements_.size() + 2;
     const Interval<double> constant = rest.finish(terms);
-    return {left.finish(terms) + constant, right.finish(terms) + constant,
-            value.finish(terms) + constant, left_slope.finish(terms),
-            slope.finish(terms), curvature.finish(terms)};
+    return {left.finish(terms) + constant,
+            right.finish(terms) + constant,
+            value.finish(terms) + constant,
+            left_slope.finish(terms),
+            slope.finish(terms),
+            curvature.finish(terms)};
 }
 
 Interval<double> FieldAlongRay::at(double t) const {

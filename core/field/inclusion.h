@@ -1,7 +1,7 @@
 // The inclusion function: f, f' and f'' of the whole field over an interval of a ray.
-// Each element's own field is enclosed without the dependency problem (along_ray.h gives the range of s,
-// the kernel is monotone in s; Blinn's along a parabola has closed ranges of f' and f'' too), so only the
-// sum over the elements loses anything.
+// Each element's own field is enclosed without the dependency problem (along_ray.h gives the range
+// of s, the kernel is monotone in s; Blinn's along a parabola has closed ranges of f' and f'' too),
+// so only the sum over the elements loses anything.
 #pragma once
 
 #include <vector>
@@ -13,10 +13,11 @@
 
 namespace ivory {
 
-// What is known of f on [t0, t1]. The elements that count as nothing there are left out of the derivatives:
-// f = g + r with g the sum over the others minus T and r a function with values in `rest`, which is part of
-// left, right and value but has no derivative here. So, with x = t - t0,
-//     f(t) <= left.hi + left_slope.hi x + curvature.hi x^2 / 2    and    f(t) <= left.hi + slope.hi x,
+// What is known of f on [t0, t1]. The elements that count as nothing there are left out of the
+// derivatives: f = g + r with g the sum over the others minus T and r a function with values in
+// `rest`, which is part of left, right and value but has no derivative here. So, with x = t - t0,
+//     f(t) <= left.hi + left_slope.hi x + curvature.hi x^2 / 2    and    f(t) <= left.hi + slope.hi
+//     x,
 // and likewise from below. slope and curvature are those of g; a downward jump of g' leaves
 // curvature.lo = -inf, an upward one curvature.hi = +inf.
 struct Enclosure {
@@ -27,7 +28,8 @@ struct Enclosure {
 // The elements of one list seen from one ray. Reused from ray to ray: it keeps its memory.
 class FieldAlongRay {
   public:
-    // origin + t direction for t in the finite `span`; the largest component of `direction` lies in [1, 2).
+    // origin + t direction for t in the finite `span`; the largest component of `direction` lies in
+    // [1, 2).
     void build(const Field& field, const ElementList& list, const Vec3d& origin,
                const Vec3d& direction, const Interval<double>& span);
 

@@ -1,5 +1,6 @@
-// The kernels k(s) as functions of s = q^2, q = distance / width, with their first two derivatives by s.
-// F = b k(s). Blinn 1982; Nishimura et al. 1985 (metaballs); Wyvill, McPheeters, Wyvill 1986 (soft objects).
+// The kernels k(s) as functions of s = q^2, q = distance / width, with their first two derivatives
+// by s. F = b k(s). Blinn 1982; Nishimura et al. 1985 (metaballs); Wyvill, McPheeters, Wyvill 1986
+// (soft objects).
 //
 //              k(s)                                   k'(s)                    k''(s)
 //   blinn      exp(-s)                                -exp(-s)                 exp(-s)
@@ -9,8 +10,9 @@
 // and 0 beyond s = 1 for the last two. The factored form of Wyvill's polynomial keeps its relative
 // accuracy near s = 1, where the expanded one cancels.
 //
-// All three fall, and all three k' rise (each k is convex in s), so that ranges over [s] need only the
-// ends. k'' falls on each piece; where it jumps (s = 1/9, s = 1) a range holds both one-sided values.
+// All three fall, and all three k' rise (each k is convex in s), so that ranges over [s] need only
+// the ends. k'' falls on each piece; where it jumps (s = 1/9, s = 1) a range holds both one-sided
+// values.
 #pragma once
 
 #include <algorithm>
@@ -31,17 +33,19 @@ struct KernelRange {
 
 namespace kernel_detail {
 
-// A chain of fewer than ten roundings, each of relative error u, ends within 12 u of the exact value.
+// A chain of fewer than ten roundings, each of relative error u, ends within 12 u of the exact
+// value.
 inline constexpr double slack = 12 * unit_roundoff;
 
-// Bounds below and above from a value that carries at most `slack` of relative error. The absolute term
-// covers products that underflow.
+// Bounds below and above from a value that carries at most `slack` of relative error. The absolute
+// term covers products that underflow.
 inline double below(double x) { return x - std::abs(x) * slack - 0x1p-1070; }
 inline double above(double x) { return x + std::abs(x) * slack + 0x1p-1070; }
 
 }  // namespace kernel_detail
 
-// exp(-s) for the s >= 0 within `radius` of a double: 1 - r <= exp(-+r) <= 1 + r + r^2 for r <= 1/4.
+// exp(-s) for the s >= 0 within `radius` of a double: 1 - r <= exp(-+r) <= 1 + r + r^2 for r <=
+// 1/4.
 inline Interval<double> exp_minus(double s, double radius) {
     if (!(radius <= 0.25)) {
         return exp(Interval<double>(sub_down(-s, radius), std::min(0.0, add_up(-s, radius))));

@@ -32,10 +32,10 @@ ElementList all_elements(const Field& field) {
     return list;
 }
 
-// A point x of a ray of the cone, at distance t from the apex, is t sine away from the axis at the most. For a
-// point c of a skeleton, the x of a ray that is nearest to c has t <= |c - apex|. So the distance from the
-// skeleton to any of the rays is at least its distance to the axis (a half line) minus sine times the
-// greatest |c - apex|.
+// A point x of a ray of the cone, at distance t from the apex, is t sine away from the axis at the
+// most. For a point c of a skeleton, the x of a ray that is nearest to c has t <= |c - apex|. So
+// the distance from the skeleton to any of the rays is at least its distance to the axis (a half
+// line) minus sine times the greatest |c - apex|.
 ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone) {
     ElementList list;
     list.rest = parent.rest;
@@ -43,12 +43,14 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
     if (list.certainly_empty) return list;
 
     int exponent = 0;
-    std::frexp(std::max(std::abs(cone.axis.x), std::max(std::abs(cone.axis.y), std::abs(cone.axis.z))),
-               &exponent);
+    std::frexp(
+        std::max(std::abs(cone.axis.x), std::max(std::abs(cone.axis.y), std::abs(cone.axis.z))),
+        &exponent);
     const double scale = std::ldexp(1.0, 1 - exponent);
     const Vec3d axis = scale * cone.axis;
     const double speed = std::sqrt(dot(axis, axis)) * (1 - 8 * u);
-    // Each element is dropped once, whatever the number of lists between: all together stay below 2^-52 T.
+    // Each element is dropped once, whatever the number of lists between: all together stay below
+    // 2^-52 T.
     const double share = field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));
 
     double bound = parent.rest.hi;
@@ -60,8 +62,8 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
         if (cone.sine <= 1 && span.hi < 1e100) {
             ElementAlongRay e;
             along_ray(field, i, cone.apex, axis, span, infinity<double>, e);
-            const double away = std::sqrt(e.least) * (1 - 4 * u) -
-                                range * cone.sine / field.width[i] * (1 + 8 * u);
+            const double away =
+                std::sqrt(e.least) * (1 - 4 * u) - range * cone.sine / field.width[i] * (1 + 8 * u);
             const double q = away > 0 ? away * (1 - 4 * u) : 0;
             peak = e.form == ElementAlongRay::Form::unbounded
                        ? 1
@@ -69,7 +71,8 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
         }
         const double most = field.strength[i] * peak * (1 + 4 * u);
         if (std::abs(most) <= share) {
-            list.rest = list.rest + (most > 0 ? Interval<double>(0.0, most) : Interval<double>(most, 0.0));
+            list.rest =
+                list.rest + (most > 0 ? Interval<double>(0.0, most) : Interval<double>(most, 0.0));
         } else {
             list.elements.push_back(i);
         }

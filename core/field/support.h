@@ -1,6 +1,6 @@
-// Where the field can matter: the elements that reach a bundle of rays, and what all others could add.
-// Skipping of elements, all of it proved: an upper bound of |F_i| over the bundle comes from the least
-// distance between skeleton and bundle.
+// Where the field can matter: the elements that reach a bundle of rays, and what all others could
+// add. Skipping of elements, all of it proved: an upper bound of |F_i| over the bundle comes from
+// the least distance between skeleton and bundle.
 #pragma once
 
 #include <cstdint>

@@ -7,8 +7,8 @@
 namespace ivory {
 namespace {
 
-// (o - c) + t d to nearly twice the precision before its one rounding: the sum and the product without
-// error (Knuth's TwoSum; Dekker's product by fma), their low parts added last.
+// (o - c) + t d to nearly twice the precision before its one rounding: the sum and the product
+// without error (Knuth's TwoSum; Dekker's product by fma), their low parts added last.
 double offset(double o, double c, double t, double d) {
     const double difference = o - c;
     const double back = difference - o;
@@ -55,8 +55,8 @@ Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
     return {off * off + h * h, off * outward + h * n, rho > 0 || r == 0};
 }
 
-// One element's share of the sample. k' is 0 beyond a finite support, where an undefined direction of the
-// gradient does no harm.
+// One element's share of the sample. k' is 0 beyond a finite support, where an undefined direction
+// of the gradient does no harm.
 void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& sum, Vec3d& weighted,
          double& weight, double& strongest, bool& defined) {
     const Nearest at = nearest(field, i, from_a);
@@ -76,7 +76,8 @@ void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& su
 }
 
 template <class Offset>
-FieldSample sum_of(const Field& field, const std::vector<std::uint32_t>& elements, Offset offset_of) {
+FieldSample sum_of(const Field& field, const std::vector<std::uint32_t>& elements,
+                   Offset offset_of) {
     FieldSample sum;
     Vec3d weighted;
     double weight = 0, strongest = -1;
@@ -102,7 +103,8 @@ FieldSample sample(const Field& field, const ElementList& list, const Vec3d& ori
 }
 
 FieldSample sample(const Field& field, const Vec3d& p) {
-    return sum_of(field, all_elements(field).elements, [&](std::size_t i) { return p - field.a(i); });
+    return sum_of(field, all_elements(field).elements,
+                  [&](std::size_t i) { return p - field.a(i); });
 }
 
 double element_value(const Field& field, std::size_t i, const Vec3d& p) {

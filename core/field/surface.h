@@ -11,14 +11,14 @@ namespace ivory {
 
 // At one point, to nearest: relative errors of a few units in the last place of the largest term.
 struct FieldSample {
-    double value = 0;             // f = sum of F_i - T
-    Vec3d gradient;               // of f, per scene unit; 0 where it is undefined
-    Vec3d color;                  // sum of color_i max(F_i, 0) / sum of max(F_i, 0); 0 where no F_i > 0
+    double value = 0;  // f = sum of F_i - T
+    Vec3d gradient;    // of f, per scene unit; 0 where it is undefined
+    Vec3d color;       // sum of color_i max(F_i, 0) / sum of max(F_i, 0); 0 where no F_i > 0
     std::uint32_t strongest = 0;  // index into Field of the element with the greatest |F_i|
 };
 
-// At the point origin + t direction of exact arithmetic: it is not rounded to doubles on the way, so far
-// origins cost no accuracy. An empty list gives value -T.
+// At the point origin + t direction of exact arithmetic: it is not rounded to doubles on the way,
+// so far origins cost no accuracy. An empty list gives value -T.
 [[nodiscard]] FieldSample sample(const Field& field, const ElementList& list, const Vec3d& origin,
                                  const Vec3d& direction, double t);
 

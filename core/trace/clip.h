@@ -1,4 +1,5 @@
-// The part of a ray that can meet the surface, and the ray in units that no later formula overflows in.
+// The part of a ray that can meet the surface, and the ray in units that no later formula overflows
+// in.
 #pragma once
 
 #include "core/field/field.h"
@@ -7,8 +8,8 @@
 
 namespace ivory {
 
-// direction * 2^shift, its largest component in [1, 2); ray t = scaled t * 2^shift. Exact but for components
-// that underflow to within 2^-1074 of their value, which along_ray.h accounts for.
+// direction * 2^shift, its largest component in [1, 2); ray t = scaled t * 2^shift. Exact but for
+// components that underflow to within 2^-1074 of their value, which along_ray.h accounts for.
 struct ScaledRay {
     Vec3d origin;
     Vec3d direction;
@@ -20,8 +21,8 @@ struct ScaledRay {
 
 [[nodiscard]] ScaledRay scaled(const Ray& ray);
 
-// The scaled t >= 0 outside of which the ray is outside of `box`: rounded outward, so that the ray is outside
-// at its upper end too. Kay, Kajiya 1986 (slabs). Empty: the ray misses the box.
+// The scaled t >= 0 outside of which the ray is outside of `box`: rounded outward, so that the ray
+// is outside at its upper end too. Kay, Kajiya 1986 (slabs). Empty: the ray misses the box.
 [[nodiscard]] Interval<double> clip(const ScaledRay& ray, const Box3& box);
 
 }  // namespace ivory

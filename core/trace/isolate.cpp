@@ -7,19 +7,21 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-// The first zero of a + b x + m x^2 / 2 in [0, width], for a < 0, rounded down; `width` where there is none.
+// The first zero of a + b x + m x^2 / 2 in [0, width], for a < 0, rounded down; `width` where there
+// is none.
 double parabola_step(double a, double b, double m, double width) {
     if (!(m < infinity<double>) || !(b < infinity<double>)) return 0;
     const double square = b * b - 2 * a * m;
     if (b > 0) {
-        // -2 a / (b + root): a larger root only shortens the step. The roundings of b^2 - 2 a m are of its
-        // terms' size.
+        // -2 a / (b + root): a larger root only shortens the step. The roundings of b^2 - 2 a m are
+        // of its terms' size.
         const double enlarged = square + 8 * u * (b * b + std::abs(a * m));
         if (enlarged < 0) return width;
         return std::min(-2 * a / (b + std::sqrt(enlarged)) * (1 - 16 * u), width);
     }
     if (m <= 0) return width;
-    // (root - b) / m: both terms of the square are positive, so that its relative error stays below 4 u.
+    // (root - b) / m: both terms of the square are positive, so that its relative error stays below
+    // 4 u.
     return std::min((std::sqrt(square) - b) / m * (1 - 16 * u), width);
 }
 
@@ -55,14 +57,14 @@ class Walk {
                 const double width = sub_up(end, t_);
                 const double step =
                     std::max(parabola_step(e.left.hi, e.left_slope.hi, e.curvature.hi, width),
-                              line_step(e.left.hi, e.slope.hi, width));
+                             line_step(e.left.hi, e.slope.hi, width));
                 if (step >= width) {
                     t_ = end;
                     window = 2 * width;
                     continue;
                 }
-                // The lower parabola crosses 0 no earlier than f does: where it does so at once, a root is
-                // close, and the next window only has to hold it.
+                // The lower parabola crosses 0 no earlier than f does: where it does so at once, a
+                // root is close, and the next window only has to hold it.
                 const double latest =
                     parabola_step(e.left.lo, e.left_slope.lo, e.curvature.lo, width);
                 const double cell = precision_.cell_at(t_);
@@ -73,12 +75,18 @@ class Walk {
             }
             // A root is near, or rounding hides the sign.
             switch (const Isolation end_of_walk = close(); close_) {
-                case Close::found: return end_of_walk;
-                case Close::none_near: window = 4 * precision_.cell_at(t_); break;
-                case Close::doubtful: window = 4 * precision_.cell_at(t_); break;
+                case Close::found:
+                    return end_of_walk;
+                case Close::none_near:
+                    window = 4 * precision_.cell_at(t_);
+                    break;
+                case Close::doubtful:
+                    window = 4 * precision_.cell_at(t_);
+                    break;
             }
         }
-        if (inside_) return unresolved(span_.hi);  // f < 0 beyond the span: not reached but by rounding
+        if (inside_)
+            return unresolved(span_.hi);  // f < 0 beyond the span: not reached but by rounding
         if (doubt_.lo <= doubt_.hi) return {Status::unresolved, doubt_};
         return {Status::miss, Interval<double>::empty_set()};
     }
@@ -108,8 +116,8 @@ class Walk {
         return oriented(field_.at(std::max(t, span_.lo)), inside_);
     }
 
-    // The side on which the ray starts. Where rounding hides it, the start up to the first place with a
-    // certain sign is in doubt: the first root may lie there.
+    // The side on which the ray starts. Where rounding hides it, the start up to the first place
+    // with a certain sign is in doubt: the first root may lie there.
     bool find_side() {
         const double cell = precision_.cell_at(t_);
         for (double ahead = 0; t_ + ahead < span_.hi && left_ > 0;
@@ -128,16 +136,17 @@ class Walk {
         return {Status::unresolved, {std::min(t_, doubt_.lo), end}};
     }
 
-    // A root in [t_, hi] is certain. Earlier doubts make it the last place where the first root can be.
+    // A root in [t_, hi] is certain. Earlier doubts make it the last place where the first root can
+    // be.
     Isolation found(double lo, double hi) {
         close_ = Close::found;
         if (is_empty(doubt_)) return {Status::hit, {std::max(lo, 0.0), hi}};
         return {Status::unresolved, {doubt_.lo, hi}};
     }
 
-    // Ends the walk on the grid if it can: [t_, hi] holds a root where f changes its sign between them, and
-    // [0, t_) holds none. Where f keeps its sign at the next grid line the walk goes on; where rounding
-    // hides signs on and on, up to the first place with a certain one.
+    // Ends the walk on the grid if it can: [t_, hi] holds a root where f changes its sign between
+    // them, and [0, t_) holds none. Where f keeps its sign at the next grid line the walk goes on;
+    // where rounding hides signs on and on, up to the first place with a certain one.
     Isolation close() {
         const double cell = precision_.cell_at(t_);
         const double line = std::floor(t_ / cell) * cell;
@@ -158,8 +167,8 @@ class Walk {
         return unresolved(span_.hi);
     }
 
-    // f has its old sign at hi again. Between t_ and hi it may have touched 0, or passed it twice. Where f keeps
-    // its sign at t_ too, the walk tries smaller windows first, once in a cell.
+    // f has its old sign at hi again. Between t_ and hi it may have touched 0, or passed it twice.
+    // Where f keeps its sign at t_ too, the walk tries smaller windows first, once in a cell.
     Isolation nothing_certain(double lo, double hi, bool hidden) {
         if (!hidden && t_ > last_none_ + 0.5 * (hi - lo) && at(t_).hi < 0) {
             last_none_ = t_;
@@ -184,7 +193,7 @@ class Walk {
     const Precision precision_;
     int left_;
     Counts& counts_;
-    double t_ = 0;         // f has no root on [0, t_) outside of doubt_, and the sign of its side there
+    double t_ = 0;  // f has no root on [0, t_) outside of doubt_, and the sign of its side there
     bool inside_ = false;  // f > 0 there
     double last_none_ = -infinity<double>;
     Interval<double> doubt_ = Interval<double>::empty_set();  // may hold the first root

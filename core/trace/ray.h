@@ -8,7 +8,8 @@
 
 namespace ivory {
 
-// p(t) = origin + t direction for t >= 0; the direction is not normalised, t is in units of |direction|.
+// p(t) = origin + t direction for t >= 0; the direction is not normalised, t is in units of
+// |direction|.
 struct Ray {
     Vec3d origin;
     Vec3d direction;

@@ -8,8 +8,7 @@ Answer trace(const Field& field, const ElementList& list, const Ray& ray, const 
     answer.isolation = method.isolate(field, list, ray, options, counts);
     const Status status = answer.isolation.status;
     if (status != Status::miss && status != Status::claimed_miss) {
-        answer.surface =
-            method.surface(field, list, ray, midpoint(answer.isolation.t), options);
+        answer.surface = method.surface(field, list, ray, midpoint(answer.isolation.t), options);
     }
     return answer;
 }

@@ -21,8 +21,8 @@ Number square(const Point& v) { return sqr(v.x) + sqr(v.y) + sqr(v.z); }
 // 3-1: d = |C - P|.
 Number square_to_point(const Point& c, const Point& p) { return square(c - p); }
 
-// 3-2: with M = B - A and the foot t = M.(P - A) / |M|^2, the distance to A for t <= 0, to A + t M between,
-// to B for t >= 1; the hull of the cases that [t] allows.
+// 3-2: with M = B - A and the foot t = M.(P - A) / |M|^2, the distance to A for t <= 0, to A + t M
+// between, to B for t >= 1; the hull of the cases that [t] allows.
 Number square_to_segment(const Point& a, const Point& b, const Point& p) {
     const Point m = b - a;
     const Number length_square = square(m);
@@ -49,7 +49,9 @@ Number natural_extension(const Field& field, const ElementList& list, const Poin
     for (const std::uint32_t i : list.elements) {
         Number s;
         switch (field.shape[i]) {
-            case Shape::point: s = square_to_point(point(field.a(i)), p); break;
+            case Shape::point:
+                s = square_to_point(point(field.a(i)), p);
+                break;
             case Shape::segment:
                 s = square_to_segment(point(field.a(i)), point(field.b(i)), p);
                 break;
@@ -122,8 +124,8 @@ Isolation Bisection::isolate(const Field& field, const ElementList& list, const 
 }
 
 // 5.2 and 6: normal f(x - delta) - f(x + delta) for each axis; 5.3: C = sum C_i F_i / T.
-SurfacePoint Bisection::surface(const Field& field, const ElementList& list, const Ray& ray, double m,
-                                const MethodOptions& options) const {
+SurfacePoint Bisection::surface(const Field& field, const ElementList& list, const Ray& ray,
+                                double m, const MethodOptions& options) const {
     const Vec3d p = ray.origin + m * ray.direction;
     const double delta = options.difference_delta * field.least_width;
     Vec3d gradient;

@@ -11,8 +11,9 @@
 namespace ivory {
 
 struct MethodOptions {
-    double tolerance = 1e-9;         // E, 1e-15 .. 0.1: widths in units of the nearest element's width
-    double difference_delta = 1e-5;  // central differences of the paper's normal, in units of the least width
+    double tolerance = 1e-9;  // E, 1e-15 .. 0.1: widths in units of the nearest element's width
+    double difference_delta =
+        1e-5;  // central differences of the paper's normal, in units of the least width
 };
 
 class Method {

@@ -42,11 +42,13 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     if (along.certainly_outside()) return miss;
 
     // 3. The first root.
-    const double speed = std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
+    const double speed =
+        std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
     const auto tolerance = [&](double width) {
         return options.tolerance * width / speed * (1 - 8 * unit_roundoff);
     };
-    // A coarser grid would save at most one step of the walk, and hide bumps that are thinner than a cell.
+    // A coarser grid would save at most one step of the walk, and hide bumps that are thinner than
+    // a cell.
     const double finest_needed = std::min(options.tolerance, 0x1p-20) / options.tolerance;
     const Precision precision{
         power_of_two_below(0.5 * finest_needed * tolerance(field.least_width))};
@@ -54,12 +56,14 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
         isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,
                            evaluation_budget, counts);
 
-    // 4. Two cells are always narrow enough. A wider bracket is judged by the element that matters there.
+    // 4. Two cells are always narrow enough. A wider bracket is judged by the element that matters
+    // there.
     const double width = sub_up(isolation.t.hi, isolation.t.lo);
     if (isolation.status == Status::hit && width > 2 * precision.cell_at(isolation.t.hi)) {
-        const FieldSample middle = sample(field, list, scaled_ray.origin, scaled_ray.direction,
-                                          midpoint(isolation.t));
-        if (!(width <= tolerance(field.width[middle.strongest]))) isolation.status = Status::unresolved;
+        const FieldSample middle =
+            sample(field, list, scaled_ray.origin, scaled_ray.direction, midpoint(isolation.t));
+        if (!(width <= tolerance(field.width[middle.strongest])))
+            isolation.status = Status::unresolved;
     }
     isolation.t = scaled_ray.unscaled(isolation.t);
     return isolation;

@@ -27,11 +27,13 @@ struct Exact {
 
 Exact exact_at(const reference::ReferenceField& field, const Ray& ray, double t) {
     const auto germ = field.along(ray, RealInterval(Real(t)));
-    return {germ.value.lo.to_double(MPFR_RNDD), germ.value.hi.to_double(MPFR_RNDU), germ.slope.lo.to_double(MPFR_RNDD), germ.slope.hi.to_double(MPFR_RNDU)};
+    return {germ.value.lo.to_double(MPFR_RNDD), germ.value.hi.to_double(MPFR_RNDU),
+            germ.slope.lo.to_double(MPFR_RNDD), germ.slope.hi.to_double(MPFR_RNDU)};
 }
 
 // The reference has the true value in [lo, hi]; the enclosure has it too if the two meet.
-void expect_meets(const Interval<double>& enclosure, double lo, double hi, const char* what, double t) {
+void expect_meets(const Interval<double>& enclosure, double lo, double hi, const char* what,
+                  double t) {
     EXPECT_TRUE(enclosure.lo <= hi && lo <= enclosure.hi)
         << what << " at t = " << t << ": exact [" << lo << ", " << hi << "], enclosed in ["
         << enclosure.lo << ", " << enclosure.hi << "]";
@@ -65,11 +67,13 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed) {
             const Exact at = exact_at(exact, same, t);
             expect_meets(e.value, at.f_lo, at.f_hi, "f", t);
             expect_meets(e.slope, at.df_lo, at.df_hi, "f'", t);
-            // By the mean value theorem f' gains between inf f'' and sup f'' times the time; an upward
-            // jump has to show as +inf, a downward one as -inf.
+            // By the mean value theorem f' gains between inf f'' and sup f'' times the time; an
+            // upward jump has to show as +inf, a downward one as -inf.
             if (t > before) {
-                const Interval<double> gain = e.curvature * (Interval<double>(t) - Interval<double>(before));
-                const double slack = 1e-13 * (std::abs(at.df_lo) + std::abs(at_before.df_lo)) + 1e-13;
+                const Interval<double> gain =
+                    e.curvature * (Interval<double>(t) - Interval<double>(before));
+                const double slack =
+                    1e-13 * (std::abs(at.df_lo) + std::abs(at_before.df_lo)) + 1e-13;
                 expect_meets(gain + Interval<double>(-slack, slack), at.df_lo - at_before.df_hi,
                              at.df_hi - at_before.df_lo, "f''", t);
             }
@@ -87,7 +91,8 @@ TEST(Inclusion, EnclosuresHoldTheExactFieldOnNastyRays) {
         recipe.elements = 1 + seed % 5;
         const Scene scene = random_scene(recipe, seed);
         for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
-            SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::string(tools::ray_kind_words[kind]));
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", " +
+                         std::string(tools::ray_kind_words[kind]));
             for (const Ray& ray : nasty_rays(scene, static_cast<RayKind>(kind), 20, seed)) {
                 check_ray(scene, ray, seed);
             }

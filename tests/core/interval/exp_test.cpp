@@ -64,6 +64,55 @@ TYPED_TEST(Exp, NearestIsExactAtZeroAndFlatOutsideItsRange) {
     static_assert(exp_nearest(Real(0)) == 1);
 }
 
+// (2), (3) and (4) of the proof in exp.h, as powers of two.
+template <class Real>
+struct Claims;
+template <>
+struct Claims<double> {
+    static constexpr double unit_of_l1 = 0x1p-42;
+    static constexpr double ln2_rest = 0x1p-102;
+    static constexpr double l2 = 0x1p-44;
+    static constexpr double log2_of_series = -59.9;
+};
+template <>
+struct Claims<float> {
+    static constexpr double unit_of_l1 = 0x1p-17;
+    static constexpr double ln2_rest = 0x1p-44;
+    static constexpr double l2 = 0x1p-19;
+    static constexpr double log2_of_series = -30.7;
+};
+
+TYPED_TEST(Exp, ConstantsAreAsTheProofHasThem) {
+    using C = ExpConstants<TypeParam>;
+    using Claim = Claims<TypeParam>;
+    using reference::RealInterval;
+    const double l1 = C::ln2_high;
+    const double l2 = C::ln2_low;
+    EXPECT_EQ(l1 / Claim::unit_of_l1, std::floor(l1 / Claim::unit_of_l1));
+    EXPECT_LT(l2, Claim::l2);
+    reference::Real ln2;
+    mpfr_const_log2(ln2.raw(), MPFR_RNDN);
+    const RealInterval rest = RealInterval(ln2) - RealInterval(l1) - RealInterval(l2);
+    EXPECT_LT(std::abs(rest.lo.to_double()), Claim::ln2_rest);
+    const double inverse = C::inverse_of_ln2;
+    EXPECT_LE(std::abs((RealInterval(inverse) * RealInterval(ln2)).lo.to_double() - 1),
+              std::numeric_limits<TypeParam>::epsilon() / 2);
+}
+
+TYPED_TEST(Exp, SeriesIsWithinItsBound) {
+    using reference::RealInterval;
+    constexpr double h = 0.3466;
+    const double bound = std::exp2(Claims<TypeParam>::log2_of_series);
+    for (int i = -2000; i <= 2000; ++i) {
+        const double r = h * i / 2000;
+        const RealInterval x(r);
+        const RealInterval tail = exp_tail<TypeParam, RealInterval>(x, x * x);
+        const RealInterval series = RealInterval(1.0) + x + RealInterval(0.5) * (x * x) + tail;
+        const double off = std::abs((series - reference::exp(x)).lo.to_double());
+        ASSERT_LE(off, std::pow(std::abs(r / h), 3) * bound + 0x1p-200) << r;
+    }
+}
+
 // Uniform, near multiples of ln 2 / 2 where the reduction turns over, near overflow and underflow,
 // tiny, short, and with any bits.
 double adversarial_argument(Adversary<double>& adversary) {

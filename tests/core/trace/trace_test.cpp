@@ -87,8 +87,8 @@ TEST_P(TraceAgainstReference, HitAndMissHoldAndDecidableRaysAreResolved) {
         const Scene scene = random_scene(c.recipe, seed);
         for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
             SCOPED_TRACE(std::string(tools::ray_kind_words[kind]));
-            judge(scene, nasty_rays(scene, static_cast<RayKind>(kind), 24, seed + kind), c.tolerance,
-                  tally);
+            judge(scene, nasty_rays(scene, static_cast<RayKind>(kind), 24, seed + kind),
+                  c.tolerance, tally);
         }
     }
     EXPECT_GT(tally.hits, 0);
@@ -96,9 +96,10 @@ TEST_P(TraceAgainstReference, HitAndMissHoldAndDecidableRaysAreResolved) {
     EXPECT_LT(1000 * tally.unresolved_decidable, std::max(tally.decidable, 1));
     EXPECT_LT(tally.worst_normal, 1e-9);
     EXPECT_LT(tally.worst_color, 1e-9);
-    std::printf("%d rays: %d hit, %d miss, %d unresolved (%d of %d decidable); normal %.1e, colour %.1e\n",
-                tally.rays, tally.hits, tally.misses, tally.unresolved, tally.unresolved_decidable,
-                tally.decidable, tally.worst_normal, tally.worst_color);
+    std::printf(
+        "%d rays: %d hit, %d miss, %d unresolved (%d of %d decidable); normal %.1e, colour %.1e\n",
+        tally.rays, tally.hits, tally.misses, tally.unresolved, tally.unresolved_decidable,
+        tally.decidable, tally.worst_normal, tally.worst_color);
 }
 
 INSTANTIATE_TEST_SUITE_P(
