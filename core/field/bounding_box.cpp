@@ -10,9 +10,9 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-// b k(s) n <= T certainly holds.
+// b k(s) n < T certainly holds.
 bool certainly_low(const Field& field, std::size_t i, double s, double positive) {
-    return kernel_at(field.kernel[i], s).hi * field.strength[i] * positive * (1 + 8 * u) <=
+    return mul_up(mul_up(kernel_at(field.kernel[i], s).hi, field.strength[i]), positive) <
            field.threshold;
 }
 
@@ -58,8 +58,11 @@ double reach(const Field& field, std::size_t i, std::size_t positive) {
     double s = 1;
     if (field.kernel[i] == KernelKind::blinn) {
         s = std::fmax(std::log(n) + std::log(field.strength[i]) - std::log(field.threshold), 0.0);
-        for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2)
+        for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2) {
+            // exp(-s) is below all doubles, and yet too much: no ball that doubles can tell.
+            if (s > 800) return infinity<double>;
             s = s * (1 + pad) + pad;
+        }
     } else {
         double lo = 0;
         for (int step = 0; step < 60; ++step) {

@@ -47,10 +47,9 @@ inline double above(double x) { return x + std::abs(x) * slack + 0x1p-1070; }
 // exp(-s) for the s >= 0 within `radius` of a double: 1 - r <= exp(-+r) <= 1 + r + r^2 for r <=
 // 1/4.
 inline Interval<double> exp_minus(double s, double radius) {
-    if (!(radius <= 0.25)) {
+    if (!(radius <= 0.25) || s > 600) {
         return exp(Interval<double>(sub_down(-s, radius), std::min(0.0, add_up(-s, radius))));
     }
-    if (s > 600) return {0.0, 1e-259};
     const double e = exp_nearest(-s);
     constexpr double rounding = exp_relative_error<double> + 8 * unit_roundoff;
     return {e * (1 - radius - rounding), std::min(e * (1 + radius * (1 + radius) + rounding), 1.0)};

@@ -31,9 +31,7 @@ void append_numbers(std::string& text, const Vec3d& v) {
     }
 }
 
-bool is_space(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 // from_chars calls a number that is too small out of range, as it does one that is too large.
 // strtod rounds it to the nearest double, in a locale that has a point and not a comma.
@@ -61,7 +59,8 @@ double parse_number(std::string_view word) {
         value = beyond_normal_range((hexadecimal ? "0x" : "") + std::string(digits));
     }
     if (!std::isfinite(value)) {
-        throw Error(in_quotes(word) + " is not finite as a double; write a number of less than 1.8e308");
+        throw Error(in_quotes(word) +
+                    " is not finite as a double; write a number of less than 1.8e308");
     }
     return negative ? -value : value;
 }
@@ -117,7 +116,8 @@ void append_row(std::string& text, const Picture& picture, const Frame& frame, i
         }
         const std::size_t p = frame.at(i, j);
         Answer answer{{frame.status[p], {}}, {}};
-        if (possibly_hit(frame.status[p])) answer = {{frame.status[p], frame.t(p)}, frame.surface[p]};
+        if (possibly_hit(frame.status[p]))
+            answer = {{frame.status[p], frame.t(p)}, frame.surface[p]};
         append_answer(text, answer);
         text += '\n';
     }
@@ -158,8 +158,9 @@ std::optional<Ray> parse_ray(std::string_view line) {
     }
     const Ray ray{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
     if (ray.direction == Vec3d{0, 0, 0}) {
-        throw Error("the direction is 0, 0, 0 and points nowhere; one of the last three numbers must "
-                    "not be 0");
+        throw Error(
+            "the direction is 0, 0, 0 and points nowhere; one of the last three numbers must "
+            "not be 0");
     }
     return ray;
 }

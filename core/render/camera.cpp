@@ -14,9 +14,7 @@ namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
-double length(const Vec3d& v) {
-    return std::hypot(v.x, v.y, v.z);
-}
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
 
 bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -71,8 +69,8 @@ Camera default_camera(const Box3& reach_box, double aspect) {
     const double horizontal = std::atan(std::tan(vertical) * aspect);
     double distance = 1.1 * radius / std::sin(std::min(vertical, horizontal));
     // A box that is hardly more than a point: far enough for the position to be another double.
-    const double size = std::max({std::abs(camera.target.x), std::abs(camera.target.y),
-                                  std::abs(camera.target.z)});
+    const double size =
+        std::max({std::abs(camera.target.x), std::abs(camera.target.y), std::abs(camera.target.z)});
     distance = std::max(distance, size > 0 ? 1e-9 * size : distance > 0 ? 0.0 : 1.0);
 
     camera.position = camera.target + distance * unit(Vec3d{0.4, 0.3, 1});
@@ -88,8 +86,7 @@ Camera camera_of(const Scene& scene, const Field& field, int width, int height) 
 }
 
 Ray primary_ray(const View& view, int width, int height, int i, int j) {
-    const Vec3d d =
-        through_plane(view, plane_u(view, width, height, i), plane_v(view, height, j));
+    const Vec3d d = through_plane(view, plane_u(view, width, height, i), plane_v(view, height, j));
     const double norm = std::sqrt(dot(d, d));
     return {view.camera.position, {d.x / norm, d.y / norm, d.z / norm}};
 }
@@ -102,10 +99,11 @@ Ray primary_ray(const View& view, int width, int height, int i, int j) {
 // What rounding adds, with e = 2^-53: forward and right have length 1 within 4 e, and top is
 // orthogonal to both within 4 e. Where |forward . right| <= 1/2, forward + u right + v top is
 // therefore at least 0.7 sqrt(1 + u^2 + v^2) long, and the sum 1 + |u| + |v| of its terms at most
-// 1.74 / 0.7 < 2.5 times as long as it is. Its three roundings per component put the computed vector
-// off by 3 e of that sum, 8 e of its length; dividing by the norm turns it by another e at most.
-// This counts for the pixel and for the corner, and the cross product and quotient below are off
-// by less than 12 e. Together that is below 32 e; the margin is 128 e, and sin(a + b) <= sin a + b.
+// 1.74 / 0.7 < 2.5 times as long as it is. Its three roundings per component put the computed
+// vector off by 3 e of that sum, 8 e of its length; dividing by the norm turns it by another e at
+// most. This counts for the pixel and for the corner, and the cross product and quotient below are
+// off by less than 12 e. Together that is below 32 e; the margin is 128 e, and sin(a + b) <= sin a
+// + b.
 Cone cone_around(const View& view, int width, int height, const PixelRect& rect) {
     constexpr double margin = 128 * 0x1p-53;
     constexpr double every_direction = 2;

@@ -36,11 +36,11 @@ class Plane {
 
 // 21 bytes a pixel, and 48 more where the surface is kept.
 struct Frame {
-    int width, height;           // pixels
-    Plane<Status> status;        //
-    Plane<double> t_lo, t_hi;    // set where a root is or may be, and nowhere else
-    Plane<Rgba8> color;          // shaded
-    Plane<SurfacePoint> surface; // likewise set where a root may be; empty unless kept
+    int width, height;  // pixels
+    Plane<Status> status;
+    Plane<double> t_lo, t_hi;     // set where a root is or may be, and nowhere else
+    Plane<Rgba8> color;           // shaded
+    Plane<SurfacePoint> surface;  // likewise set where a root may be; empty unless kept
 
     Frame(int frame_width, int frame_height, bool keep_surface)
         : width(frame_width),

@@ -46,8 +46,8 @@ bool write_png(const Frame& frame, png_byte* row, PngOutput& output) {
     png_set_compression_level(png, 1);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_IHDR(png, info, static_cast<png_uint_32>(frame.width),
-                 static_cast<png_uint_32>(frame.height), 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 static_cast<png_uint_32>(frame.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     for (int j = 0; j < frame.height; ++j) {
@@ -88,8 +88,8 @@ std::string png_bytes(const Frame& frame) {
 }
 
 std::string depth_bytes(const Frame& frame) {
-    std::string bytes = "Pf\n" + std::to_string(frame.width) + " " + std::to_string(frame.height) +
-                        "\n-1.0\n";
+    std::string bytes =
+        "Pf\n" + std::to_string(frame.width) + " " + std::to_string(frame.height) + "\n-1.0\n";
     bytes.reserve(bytes.size() + 4 * frame.size());
     for (int j = frame.height - 1; j >= 0; --j) {
         for (int i = 0; i < frame.width; ++i) {

@@ -43,9 +43,7 @@ std::vector<int> strides_of(const JobSettings& settings) {
 
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
 // so alike, its corner being a multiple of 16.
-bool on_stride(int i, int j, int stride) {
-    return i % stride == 0 && j % stride == 0;
-}
+bool on_stride(int i, int j, int stride) { return i % stride == 0 && j % stride == 0; }
 
 }  // namespace
 
@@ -169,9 +167,8 @@ class FrameJob::Work {
             const long j = (rect.y0 + rect.y1) / 2 - focus_j;
             return i * i + j * j;
         };
-        std::stable_sort(
-            block_order_.begin(), block_order_.end(),
-            [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+        std::stable_sort(block_order_.begin(), block_order_.end(),
+                         [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
     }
 
     std::size_t region_of(std::size_t block) const {
@@ -306,7 +303,8 @@ class FrameJob::Work {
         Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
         for (int j = rect.y0; j < rect.y1; ++j) {
-            for (std::size_t p = frame.at(rect.x0, j), end = p + static_cast<std::size_t>(rect.width());
+            for (std::size_t p = frame.at(rect.x0, j),
+                             end = p + static_cast<std::size_t>(rect.width());
                  p < end; ++p) {
                 frame.status[p] = Status::miss;
                 frame.color[p] = picture_.lighting.background;
@@ -316,7 +314,8 @@ class FrameJob::Work {
         tile.stride = 1;
         tile.empty = true;
         tile.pixels = {};
-        tile.pixels[static_cast<std::size_t>(Status::miss)] = static_cast<std::uint16_t>(rect.area());
+        tile.pixels[static_cast<std::size_t>(Status::miss)] =
+            static_cast<std::uint16_t>(rect.area());
         tile.enclosure_width_max = 0;
         tile.unresolved_width_max = 0;
         notify(index);
@@ -462,29 +461,17 @@ FrameJob::FrameJob(Picture picture, Canvas& canvas, JobSettings settings)
     work_->start();
 }
 
-FrameJob::~FrameJob() {
-    cancel();
-}
+FrameJob::~FrameJob() { cancel(); }
 
-void FrameJob::cancel() noexcept {
-    work_->cancel();
-}
+void FrameJob::cancel() noexcept { work_->cancel(); }
 
-bool FrameJob::finished() const {
-    return work_->finished();
-}
+bool FrameJob::finished() const { return work_->finished(); }
 
-bool FrameJob::wait_for(std::chrono::milliseconds time) const {
-    return work_->wait_for(time);
-}
+bool FrameJob::wait_for(std::chrono::milliseconds time) const { return work_->wait_for(time); }
 
-JobReport FrameJob::finish() {
-    return work_->finish();
-}
+JobReport FrameJob::finish() { return work_->finish(); }
 
-double FrameJob::progress() const noexcept {
-    return work_->progress();
-}
+double FrameJob::progress() const noexcept { return work_->progress(); }
 
 JobReport render(const Picture& picture, Canvas& canvas, const JobSettings& settings) {
     return FrameJob(picture, canvas, settings).finish();

@@ -1,5 +1,5 @@
-// A picture painted on a canvas by worker threads: tile by tile, coarse to fine if asked, in full or
-// in part, until it is done or cancelled.
+// A picture painted on a canvas by worker threads: tile by tile, coarse to fine if asked, in full
+// or in part, until it is done or cancelled.
 #pragma once
 
 #include <chrono>
@@ -25,8 +25,8 @@ enum class Order : std::uint8_t {
     coarse_to_fine,  // all tiles with every 8th pixel, then 4th, 2nd, all; no pixel traced twice
 };
 
-// Pixels whose column and row are multiples of `stride` are in the frame now. Those between that are
-// not traced yet hold nothing new.
+// Pixels whose column and row are multiples of `stride` are in the frame now. Those between that
+// are not traced yet hold nothing new.
 struct TileNotice {
     std::size_t tile;
     PixelRect rect;
@@ -48,16 +48,16 @@ struct JobSettings {
 };
 
 struct JobReport {
-    bool complete = false;  // false: cancelled before the last tile
-    double seconds = 0;     // from start to the last worker's end
-    double shade_share = 0; // of the workers' time, 0..1; the rest went into tracing
+    bool complete = false;   // false: cancelled before the last tile
+    double seconds = 0;      // from start to the last worker's end
+    double shade_share = 0;  // of the workers' time, 0..1; the rest went into tracing
     Counts counts;
     std::size_t tiles_traced = 0;      // tiles of which this job traced or shaded a pixel
     std::size_t elements_reached = 0;  // elements in the list of a tile that is not empty
 };
 
-// Starts at once. The canvas must outlive it and belongs to it until `finish`, `cancel_and_wait` or
-// the destructor has returned; then every tile is what its TileState says, cancelled or not.
+// Starts at once. The canvas must outlive it and belongs to it until `finish` or the destructor has
+// returned; then every tile is what its TileState says, cancelled or not.
 class FrameJob {
   public:
     // Throws std::bad_alloc, or std::system_error where no thread can be started.

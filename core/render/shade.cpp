@@ -18,9 +18,7 @@ constexpr double sky = 0.12;        // light from all around, from the zenith
 constexpr double ground = 0.03;     // and from below
 constexpr double rim = 0.06;        // what grazing sight mirrors of the surroundings
 
-Color times(const Color& a, const Color& b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
+Color times(const Color& a, const Color& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 // x^48: half as bright where the normal is 10 degrees away from the highlight's middle.
 double lobe(double x) {
@@ -86,10 +84,10 @@ Lighting make_lighting(const Scene& scene, const View& view) {
     lighting.background = to_srgb(scene.background);
     for (const Light& light : scene.lights ? *scene.lights : default_lights()) {
         const Vec3d d = unit(light.direction);
-        lighting.lamps.push_back(
-            {light.attached_to_camera ? unit(d.x * view.right + d.y * view.top - d.z * view.forward)
+        lighting.lamps.push_back({light.attached_to_camera
+                                      ? unit(d.x * view.right + d.y * view.top - d.z * view.forward)
                                       : d,
-             light.intensity * light.color});
+                                  light.intensity * light.color});
     }
     return lighting;
 }
@@ -122,8 +120,8 @@ Rgba8 shade(const Lighting& lighting, const Vec3d& direction, const SurfacePoint
         const double across = dot(normal, halfway) / std::sqrt(dot(halfway, halfway));
         // Fades in with the light itself, so that no highlight is cut at the edge of the shadow.
         const double gloss = highlight * lobe(std::min(across, 1.0)) * std::min(1.0, 4 * lit);
-        light = light + (diffuse * lit) * times(surface.color, lamp.radiance) +
-                gloss * lamp.radiance;
+        light =
+            light + (diffuse * lit) * times(surface.color, lamp.radiance) + gloss * lamp.radiance;
     }
     return to_srgb({shoulder(light.x), shoulder(light.y), shoulder(light.z)});
 }

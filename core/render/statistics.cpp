@@ -10,9 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json array_of(const Vec3d& v) {
-    return Json::array({v.x, v.y, v.z});
-}
+Json array_of(const Vec3d& v) { return Json::array({v.x, v.y, v.z}); }
 
 }  // namespace
 
@@ -54,9 +52,8 @@ std::string statistics_json(const RenderStatistics& s) {
     json["pixels"] = pixels;
     json["evaluations"] = s.counts.evaluations;
     json["element_evaluations"] = s.counts.element_evaluations;
-    json["elements"] = {{"total", s.elements},
-                        {"visible", s.visible_elements},
-                        {"reached", s.reached_elements}};
+    json["elements"] = {
+        {"total", s.elements}, {"visible", s.visible_elements}, {"reached", s.reached_elements}};
     json["tiles"] = {{"total", s.pixels.tiles}, {"empty", s.pixels.empty_tiles}};
     json["enclosure_width_max"] = s.pixels.enclosure_width_max;
     json["unresolved_width_max"] = s.pixels.unresolved_width_max;
