@@ -20,11 +20,11 @@ double gap(double lo, double hi, double other_lo, double other_hi) {
     return std::fmax(0.0, std::fmax(other_lo - hi, lo - other_hi));
 }
 
-// A lower bound of the distance between two boxes.
-double box_distance(const Box3& a, const Box3& b) {
+// A lower bound of the distance between two boxes, in units of `width`.
+double box_distance(const Box3& a, const Box3& b, double width) {
     double square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double g = gap(a.lo[k], a.hi[k], b.lo[k], b.hi[k]);
+        const double g = gap(a.lo[k], a.hi[k], b.lo[k], b.hi[k]) / width;
         square += g * g;
     }
     return std::sqrt(square) * (1 - 16 * u);
@@ -36,7 +36,7 @@ bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, c
     double sum = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
         if (field.strength[i] < 0) continue;
-        const double q = box_distance(skeletons[i], box) / field.width[i] * (1 - 4 * u);
+        const double q = box_distance(skeletons[i], box, field.width[i]);
         sum += field.strength[i] * kernel_at(field.kernel[i], q * q * (1 - 4 * u)).hi;
         if (sum >= field.threshold) return false;
     }

@@ -83,6 +83,7 @@ Terms blinn_parabola(const MovingSquare& square, double peak, double t0, double 
 
 // exp(-s) over a thin [s], by one exponential.
 Interval<double> blinn_over(const Interval<double>& s) {
+    if (!(s.hi < infinity<double>)) return kernel_over(KernelKind::blinn, s);
     const double middle = midpoint(s);
     return exp_minus(middle, std::max(s.hi - middle, middle - s.lo) * (1 + 4 * u));
 }
@@ -211,14 +212,21 @@ class Sum {
 void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec3d& origin,
                           const Vec3d& direction, const Interval<double>& span) {
     elements_.clear();
-    threshold_ = field.threshold;
+    // All of f in units of a power of two near T: exact, but for strengths that overflow, which
+    // then bound nothing, and what underflows beside T, which Sum's absolute term covers.
+    threshold_ = std::frexp(field.threshold, &exponent_);
     Sum peaks, rest;
-    rest.add(1, list.rest);
-    peaks.add(1, list.rest);
-    peaks.add(-1, Interval<double>(field.threshold));
+    const Interval<double> left_out(std::ldexp(list.rest.lo, -exponent_),
+                                    std::ldexp(list.rest.hi, -exponent_));
+    rest.add(1, left_out);
+    peaks.add(1, left_out);
+    peaks.add(-1, Interval<double>(threshold_));
     for (const std::uint32_t i : list.elements) {
         ElementAlongRay& element = elements_.emplace_back();
         along_ray(field, i, origin, direction, span, field.cut[i], element);
+        element.strength = std::ldexp(element.strength, -exponent_);
+        element.beyond = {std::ldexp(element.beyond.lo, -exponent_),
+                          std::ldexp(element.beyond.hi, -exponent_)};
         if (is_empty(element.active)) {
             rest.add(1, element.beyond);
             peaks.add(1, element.beyond);

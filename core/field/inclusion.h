@@ -25,7 +25,9 @@ struct Enclosure {
     Interval<double> left_slope, slope, curvature;
 };
 
-// The elements of one list seen from one ray. Reused from ray to ray: it keeps its memory.
+// The elements of one list seen from one ray, in units of 2^exponent(): the power of two that
+// brings T into [1/2, 1), so that no strength is too large or too small. Reused from ray to ray: it
+// keeps its memory.
 class FieldAlongRay {
   public:
     // origin + t direction for t in the finite `span`; the largest component of `direction` lies in
@@ -42,13 +44,17 @@ class FieldAlongRay {
     // f(t), enclosed.
     [[nodiscard]] Interval<double> at(double t) const;
 
+    // f in scene units is 2^exponent() times what is enclosed here.
+    [[nodiscard]] int exponent() const { return exponent_; }
+
     // Elements that take part in an evaluation.
     [[nodiscard]] std::size_t size() const { return elements_.size(); }
 
   private:
     std::vector<ElementAlongRay> elements_;
     Interval<double> rest_{0.0, 0.0};  // of the elements that are not in elements_
-    double threshold_ = 0;
+    double threshold_ = 0;             // T / 2^exponent_
+    int exponent_ = 0;
     double peaks_ = 0;  // upper bound of f over the span
 };
 

@@ -97,6 +97,7 @@ inline Interval<double> kernel_slope_at(KernelKind kind, double s) {
 
 // The range of k over [s], s >= 0 where it matters: a lower end below 0 counts as 0.
 inline Interval<double> kernel_over(KernelKind kind, const Interval<double>& s) {
+    if (is_empty(s)) return {0.0, 1.0};  // lost to overflow: all that k can be
     return {kernel_at(kind, s.hi).lo, kernel_at(kind, std::max(s.lo, 0.0)).hi};
 }
 
@@ -107,6 +108,10 @@ inline KernelRange kernel_range(KernelKind kind, const Interval<double>& s) {
     const double s_lo = std::max(s.lo, 0.0);
     KernelRange range;
     range.k = kernel_over(kind, s);
+    if (is_empty(s)) {
+        range.dk = range.ddk = Interval<double>::entire();
+        return range;
+    }
     if (kind == KernelKind::blinn) {
         range.dk = -range.k;
         range.ddk = range.k;

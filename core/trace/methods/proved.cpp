@@ -67,6 +67,9 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
             isolation.status = Status::unresolved;
     }
     isolation.t = scaled_ray.unscaled(isolation.t);
+    if (isolation.status == Status::hit && !(isolation.t.hi < infinity<double>)) {
+        isolation.status = Status::unresolved;  // t is beyond the doubles
+    }
     return isolation;
 }
 

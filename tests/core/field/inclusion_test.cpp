@@ -25,8 +25,11 @@ struct Exact {
     double f_lo, f_hi, df_lo, df_hi;
 };
 
-Exact exact_at(const reference::ReferenceField& field, const Ray& ray, double t) {
-    const auto germ = field.along(ray, RealInterval(Real(t)));
+// In units of 2^exponent, exactly.
+Exact exact_at(const reference::ReferenceField& field, const Ray& ray, int exponent, double t) {
+    auto germ = field.along(ray, RealInterval(Real(t)));
+    const RealInterval unit(Real(std::ldexp(1.0, -exponent)));
+    germ = {germ.value * unit, germ.slope * unit};
     return {germ.value.lo.to_double(MPFR_RNDD), germ.value.hi.to_double(MPFR_RNDU),
             germ.slope.lo.to_double(MPFR_RNDD), germ.slope.hi.to_double(MPFR_RNDU)};
 }
@@ -55,7 +58,8 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed) {
         const double t1 = std::min(t0 + length, span.hi);
         if (!(t0 < t1)) continue;
         const Enclosure e = along.over(t0, t1);
-        const Exact left = exact_at(exact, same, t0), right = exact_at(exact, same, t1);
+        const Exact left = exact_at(exact, same, along.exponent(), t0),
+                    right = exact_at(exact, same, along.exponent(), t1);
         expect_meets(e.left, left.f_lo, left.f_hi, "left", t0);
         expect_meets(e.right, right.f_lo, right.f_hi, "right", t1);
         expect_meets(e.left_slope, left.df_lo, left.df_hi, "left slope", t0);
@@ -64,7 +68,7 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed) {
         Exact at_before = left;
         for (int i = 0; i < 4; ++i) {
             const double t = random.uniform(before, t1);
-            const Exact at = exact_at(exact, same, t);
+            const Exact at = exact_at(exact, same, along.exponent(), t);
             expect_meets(e.value, at.f_lo, at.f_hi, "f", t);
             expect_meets(e.slope, at.df_lo, at.df_hi, "f'", t);
             // By the mean value theorem f' gains between inf f'' and sup f'' times the time; an
