@@ -285,7 +285,7 @@ bool set_circle(ElementAlongRay& e, const Field& field, std::size_t i, const Vec
 }
 
 // A lower bound of s over the span.
-double least_square(const ElementAlongRay& e, const Interval<double>& span) {
+double least_square(const ElementAlongRay& e, const Interval<double>& span, double cut) {
     if (e.form == ElementAlongRay::Form::squares) {
         double least = infinity<double>;
         for (int k = 0; k < e.piece_count; ++k) {
@@ -295,9 +295,10 @@ double least_square(const ElementAlongRay& e, const Interval<double>& span) {
     }
     // Cut the active part into windows: their ranges are tighter than that of the whole.
     const Interval<double> where = intersection(span, e.active);
-    if (is_empty(where)) return 0;
+    if (is_empty(where)) return cut;
     constexpr int windows = 6;
-    double least = infinity<double>;
+    // Outside of it, all that is known is s >= cut.
+    double least = is_subset(span, where) ? infinity<double> : cut;
     CircleAlongRay::At left = e.circle.at(where.lo);
     double t0 = where.lo;
     for (int k = 1; k <= windows; ++k) {
@@ -399,7 +400,7 @@ void along_ray(const Field& field, std::size_t i, const Vec3d& origin, const Vec
         return;
     }
     e.active = intersection(e.active, span);
-    e.least = is_empty(e.active) ? cut : least_square(e, span);
+    e.least = is_empty(e.active) ? cut : least_square(e, span, cut);
     e.peak = kernel_at(e.kernel, e.least).hi;
 }
 

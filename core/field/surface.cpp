@@ -60,6 +60,9 @@ Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
 void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& sum, Vec3d& weighted,
          double& weight, double& strongest, bool& defined) {
     const Nearest at = nearest(field, i, from_a);
+    // Beyond the support, and where exp(-s) is below all doubles, nothing is added; with a tiny
+    // width the numbers below could overflow there.
+    if (!(at.s < (field.kernel[i] == KernelKind::blinn ? 800 : 1))) return;
     const double b = field.strength[i];
     const double k = midpoint(kernel_at(field.kernel[i], at.s));
     const double dk = midpoint(kernel_slope_at(field.kernel[i], at.s));

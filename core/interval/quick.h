@@ -22,48 +22,53 @@ inline double product(double a, double b) {
     const double p = a * b;
     return p == p ? p : 0;
 }
-// Infinite ends must not turn into NaN: inf - inf.
-inline double down_or_infinite(double x) { return std::abs(x) < infinity<double> ? down(x) : x; }
-inline double up_or_infinite(double x) { return std::abs(x) < infinity<double> ? up(x) : x; }
+// A lower end that is infinite stays or, where it overflowed, is the largest double; likewise
+// above.
+inline double lower_end(double x) {
+    return std::abs(x) < infinity<double> ? down(x) : std::min(x, largest<double>);
+}
+inline double upper_end(double x) {
+    return std::abs(x) < infinity<double> ? up(x) : std::max(x, -largest<double>);
+}
 }  // namespace detail
 
 inline Interval<double> add(const Interval<double>& a, const Interval<double>& b) {
-    return {detail::down_or_infinite(a.lo + b.lo), detail::up_or_infinite(a.hi + b.hi)};
+    return {detail::lower_end(a.lo + b.lo), detail::upper_end(a.hi + b.hi)};
 }
 
 inline Interval<double> sub(const Interval<double>& a, const Interval<double>& b) {
-    return {detail::down_or_infinite(a.lo - b.hi), detail::up_or_infinite(a.hi - b.lo)};
+    return {detail::lower_end(a.lo - b.hi), detail::upper_end(a.hi - b.lo)};
 }
 
 inline Interval<double> mul(const Interval<double>& a, const Interval<double>& b) {
     const double ll = detail::product(a.lo, b.lo), lh = detail::product(a.lo, b.hi);
     const double hl = detail::product(a.hi, b.lo), hh = detail::product(a.hi, b.hi);
-    return {detail::down_or_infinite(std::min(std::min(ll, lh), std::min(hl, hh))),
-            detail::up_or_infinite(std::max(std::max(ll, lh), std::max(hl, hh)))};
+    return {detail::lower_end(std::min(std::min(ll, lh), std::min(hl, hh))),
+            detail::upper_end(std::max(std::max(ll, lh), std::max(hl, hh)))};
 }
 
 // s >= 0 finite, exact.
 inline Interval<double> scale(double s, const Interval<double>& a) {
-    return {detail::down_or_infinite(detail::product(s, a.lo)),
-            detail::up_or_infinite(detail::product(s, a.hi))};
+    return {detail::lower_end(detail::product(s, a.lo)),
+            detail::upper_end(detail::product(s, a.hi))};
 }
 
 // b > 0.
 inline Interval<double> div(const Interval<double>& a, const Interval<double>& b) {
-    return {detail::down_or_infinite(a.lo / (a.lo < 0 ? b.lo : b.hi)),
-            detail::up_or_infinite(a.hi / (a.hi < 0 ? b.hi : b.lo))};
+    return {detail::lower_end(a.lo / (a.lo < 0 ? b.lo : b.hi)),
+            detail::upper_end(a.hi / (a.hi < 0 ? b.hi : b.lo))};
 }
 
 inline Interval<double> sqr(const Interval<double>& a) {
     const double most = std::max(std::abs(a.lo), std::abs(a.hi));
     const double least = std::max(std::max(a.lo, -a.hi), 0.0);
-    return {std::max(down(least * least), 0.0), detail::up_or_infinite(most * most)};
+    return {std::max(detail::lower_end(least * least), 0.0), detail::upper_end(most * most)};
 }
 
 // a.hi >= 0.
 inline Interval<double> sqrt(const Interval<double>& a) {
-    return {std::max(down(std::sqrt(std::max(a.lo, 0.0))), 0.0),
-            detail::up_or_infinite(std::sqrt(a.hi))};
+    return {std::max(detail::lower_end(std::sqrt(std::max(a.lo, 0.0))), 0.0),
+            detail::upper_end(std::sqrt(a.hi))};
 }
 
 }  // namespace ivory::quick

@@ -35,7 +35,7 @@ enum class Start : unsigned char {
 // The first root on the span, given that f < 0 beyond its end. hit: two cells wide at the most,
 // four where rounding hides the sign on several grid lines (the caller checks the width).
 // unresolved: the first root, if there is one, lies in t. Does not allocate or throw; at most
-// `budget` evaluations.
+// `budget` + 4 evaluations (the last look around is finished).
 [[nodiscard]] Isolation isolate_first_root(const FieldAlongRay& field, const Interval<double>& span,
                                            Start start, const Precision& precision, int budget,
                                            Counts& counts);

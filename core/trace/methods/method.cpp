@@ -19,7 +19,9 @@ Vec3d outward_normal(const Vec3d& gradient) {
     // Scaled first, so that no square over- or underflows.
     const double largest =
         std::fmax(std::abs(gradient.x), std::fmax(std::abs(gradient.y), std::abs(gradient.z)));
-    if (!(largest > 0) || !(largest < infinity<double>)) return {};
+    const bool finite =
+        std::isfinite(gradient.x) && std::isfinite(gradient.y) && std::isfinite(gradient.z);
+    if (!finite || largest == 0) return {};
     const Vec3d g{gradient.x / largest, gradient.y / largest, gradient.z / largest};
     const double length = std::sqrt(dot(g, g));
     return {-g.x / length, -g.y / length, -g.z / length};

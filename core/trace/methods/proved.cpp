@@ -14,7 +14,8 @@ namespace {
 // Enough for a ray that grazes many elements; one that needs more says `unresolved`.
 constexpr int evaluation_budget = 4000;
 
-// The greatest power of two <= x, but no less than 2^-1000 (Precision::cell_at has a floor of its own).
+// The greatest power of two <= x, but no less than 2^-1000 (Precision::cell_at has a floor of its
+// own).
 double power_of_two_below(double x) {
     if (!(x > 0x1p-1000)) return 0x1p-1000;
     int exponent = 0;
