@@ -148,6 +148,34 @@ void add_info_options(CLI::App& call, InfoArguments& info) {
                   "lists the methods of --method and what each proves; takes no scene");
 }
 
+void add_viewer_options(CLI::App& app, ViewerArguments& viewer) {
+    app.add_option("SCENE", viewer.scene, "scene file to open in the viewer")->type_name("");
+    app.add_flag("--headless", viewer.headless,
+                 "runs the viewer in memory, without a window or a display");
+    app.add_option("--script", viewer.script,
+                   "with --headless: what a person does, one JSON object a line; - for standard "
+                   "input; default: wait until the picture is final")
+        ->type_name("FILE");
+    app.add_option("--screenshot", viewer.screenshot, "with --headless: the whole window at the end")
+        ->type_name("OUT.png");
+    add_value(app, "--size", "WxH", "of the window in pixels; default 1280x720",
+              [&viewer](const std::string& text) { read_size(text, viewer.width, viewer.height); });
+    app.add_flag("--no-settings", viewer.no_settings,
+                 "neither reads nor writes the user's settings; implied by --headless");
+    add_value(app, "--threads", "N", "worker threads; default: one for each processor",
+              [&viewer](const std::string& text) {
+                  viewer.threads = read_count("--threads", text, most_threads);
+              });
+}
+
+void check(const ViewerArguments& viewer) {
+    if (viewer.headless) return;
+    if (viewer.script) throw UsageError("--script needs --headless");
+    if (viewer.screenshot) {
+        throw UsageError("--screenshot needs --headless; in the window F12 takes one");
+    }
+}
+
 void check(const RenderArguments& render) {
     const std::array outputs{render.picture, render.depth, render.answers, render.statistics};
     bool any = false;
@@ -207,11 +235,12 @@ Arguments parse_arguments(int count, const char* const* words) {
     }
     InfoArguments info;
     ViewerArguments viewer;
+    viewer.threads = processors;
 
     CLI::App app{"Draws implicit surfaces with skeletons, and proves every pixel.", "ivory"};
     app.set_version_flag("--version", "ivory " IVORY_VERSION);
     app.require_subcommand(0, 1);
-    app.add_option("SCENE", viewer.scene, "scene file to open in the viewer")->type_name("");
+    add_viewer_options(app, viewer);
     CLI::App& render_call =
         *app.add_subcommand("render", "Draws a picture, without a display or OpenGL.");
     CLI::App& trace_call = *app.add_subcommand(
@@ -237,6 +266,7 @@ Arguments parse_arguments(int count, const char* const* words) {
             check(info);
             return info;
         }
+        check(viewer);
         return viewer;
     } catch (const CLI::CallForHelp&) {
         return HelpText{app.help()};

@@ -3,8 +3,6 @@
 
 namespace ivory {
 
-void run(const HelpText& help) {
-    Output("-").write(help.text);
-}
+void run(const HelpText& help) { Output("-").write(help.text); }
 
 }  // namespace ivory

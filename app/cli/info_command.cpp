@@ -125,14 +125,13 @@ std::string text_of(const std::string& file, const Scene& scene, const Field& fi
     text += "camera     position " + text_of(camera.position) + ", target " +
             text_of(camera.target) + ", up " + text_of(camera.up) + ", fov " +
             number_text(camera.fov) + (scene.camera ? "" : " (framed for 1280x720)") + "\n";
-    text += "lights     " + std::to_string(scene.lights ? scene.lights->size() : default_lights().size()) +
+    text += "lights     " +
+            std::to_string(scene.lights ? scene.lights->size() : default_lights().size()) +
             (scene.lights ? "" : " (the default ones)") + "\n";
     return text + text_of_skips(scene);
 }
 
-Json json_of(const Vec3d& v) {
-    return Json::array({v.x, v.y, v.z});
-}
+Json json_of(const Vec3d& v) { return Json::array({v.x, v.y, v.z}); }
 
 Json json_of(const Box3& box) {
     if (box.empty()) return nullptr;

@@ -10,9 +10,7 @@ namespace {
 std::atomic<bool> flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "else a signal handler must not touch it");
 
-extern "C" void raise_flag(int) {
-    flag.store(true, std::memory_order_relaxed);
-}
+extern "C" void raise_flag(int) { flag.store(true, std::memory_order_relaxed); }
 
 }  // namespace
 
@@ -25,9 +23,7 @@ void watch_interrupts() {
     ::sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupted() noexcept {
-    return flag.load(std::memory_order_relaxed);
-}
+bool interrupted() noexcept { return flag.load(std::memory_order_relaxed); }
 
 void stop_if_interrupted() {
     if (interrupted()) throw Interrupted();

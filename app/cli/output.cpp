@@ -25,9 +25,9 @@ void write_to_standard_output(std::string_view bytes) {
             pollfd ready{STDOUT_FILENO, POLLOUT, 0};
             static_cast<void>(::poll(&ready, 1, -1));
         } else if (errno != EINTR) {
-            throw Error("standard output: cannot be written: " +
-                        std::generic_category().message(errno) +
-                        "; name a file or a reader that takes it all");
+            throw Error(
+                "standard output: cannot be written: " + std::generic_category().message(errno) +
+                "; name a file or a reader that takes it all");
         }
     }
 }

@@ -79,8 +79,7 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
     Rendering rendering;
     Picture& picture = rendering.picture;
     picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view =
-        make_view(camera_of(scene, *picture.field, arguments.width, arguments.height));
+    picture.view = make_view(camera_of(scene, *picture.field, arguments.width, arguments.height));
     picture.lighting = make_lighting(scene, picture.view);
     picture.method = arguments.work.method;
     picture.options = arguments.work.options;
@@ -140,9 +139,10 @@ std::string summary(const RenderStatistics& statistics) {
     std::snprintf(seconds, sizeof seconds, "%.3f s", statistics.seconds.total);
     std::string line = std::to_string(statistics.width) + "x" + std::to_string(statistics.height) +
                        " in " + seconds;
-    for (const Status status : {Status::hit, Status::miss, Status::unresolved,
-                                Status::claimed_hit, Status::claimed_miss}) {
-        if (count(status) != "0") line += ", " + count(status) + " " + std::string(status_word(status));
+    for (const Status status : {Status::hit, Status::miss, Status::unresolved, Status::claimed_hit,
+                                Status::claimed_miss}) {
+        if (count(status) != "0")
+            line += ", " + count(status) + " " + std::string(status_word(status));
     }
     return line;
 }
@@ -164,8 +164,9 @@ void run(const RenderArguments& arguments) {
     Rendering rendering;
     for (int run = 1; run <= arguments.repeat; ++run) {
         const std::string label =
-            arguments.repeat == 1 ? ""
-                                  : std::to_string(run) + "/" + std::to_string(arguments.repeat) + ": ";
+            arguments.repeat == 1
+                ? ""
+                : std::to_string(run) + "/" + std::to_string(arguments.repeat) + ": ";
         rendering = {};  // not two canvases at a time
         rendering = render_once(scene, arguments, task, label, progress);
         runs.push_back(rendering.seconds);

@@ -173,7 +173,8 @@ void run(const TraceArguments& arguments) {
             output.write(chunk.answers);
             if (chunk.bad_line) {
                 throw Error(input.label() + ": line " +
-                            std::to_string(lines_before + *chunk.bad_line + 1) + ": " + chunk.fault);
+                            std::to_string(lines_before + *chunk.bad_line + 1) + ": " +
+                            chunk.fault);
             }
         }
         lines_before += lines.size();

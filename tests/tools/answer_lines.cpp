@@ -96,16 +96,19 @@ std::vector<Ray> read_rays(std::istream& in) {
 
 std::vector<CheckedLine> read_answers(std::istream& in,
                                       const std::optional<std::vector<Ray>>& rays) {
-    const std::string columns = "status,t_lo,t_hi,nx,ny,nz,r,g,b";
-    const std::string header = rays ? columns : "ox,oy,oz,dx,dy,dz," + columns;
+    const std::string header = "status,t_lo,t_hi,nx,ny,nz,r,g,b";
     const std::size_t first = rays ? 0 : 6;
+    std::size_t count = 1;
     std::string line;
-    std::getline(in, line);
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line != header) refuse(1, "'" + line + "' where '" + header + "' should be");
+    if (rays) {  // a picture's answers have no header, one line is one pixel
+        std::getline(in, line);
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (line != header) refuse(1, "'" + line + "' where '" + header + "' should be");
+        ++count;
+    }
 
     std::vector<CheckedLine> lines;
-    for (std::size_t count = 2; std::getline(in, line); ++count) {
+    for (; std::getline(in, line); ++count) {
         const std::vector<std::string> cells = split(line);
         if (cells.size() != first + 9) {
             refuse(count, std::to_string(cells.size()) + " columns where " +

@@ -41,7 +41,8 @@ int main() {
                 }
                 const std::lock_guard lock(mutex);
                 all += found;
-                std::fprintf(stderr, "\r%u of %u", ++chunks_done, chunks);
+                std::fprintf(stderr, "\r%u of %u parts, %lld faults", ++chunks_done, chunks,
+                             static_cast<long long>(all.faults));
             }
         }
         mpfr_free_cache();

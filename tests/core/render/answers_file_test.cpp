@@ -19,8 +19,20 @@ namespace {
 
 std::vector<double> doubles() {
     using Limits = std::numeric_limits<double>;
-    std::vector<double> values{0.0,           -0.0, 1,   -1,  0.1, 1e300, -1e-300, Limits::max(),
-                               Limits::min(), 3e5,  0.5, 1e22, Limits::denorm_min(), -0x1.8p-1070};
+    std::vector<double> values{0.0,
+                               -0.0,
+                               1,
+                               -1,
+                               0.1,
+                               1e300,
+                               -1e-300,
+                               Limits::max(),
+                               Limits::min(),
+                               3e5,
+                               0.5,
+                               1e22,
+                               Limits::denorm_min(),
+                               -0x1.8p-1070};
     std::mt19937_64 random(3);
     while (values.size() < 5000) {
         const auto value = std::bit_cast<double>(random());
@@ -55,7 +67,8 @@ TEST(AnswersFile, AnAnswerReadsBackToTheSameDoubles) {
     for (std::size_t k = 0; k + 8 <= values.size(); k += 8) {
         const double* v = &values[k];
         std::string text;
-        append_answer(text, {{Status::hit, {v[0], v[1]}}, {{v[2], v[3], v[4]}, {v[5], v[6], v[7]}}});
+        append_answer(text,
+                      {{Status::hit, {v[0], v[1]}}, {{v[2], v[3], v[4]}, {v[5], v[6], v[7]}}});
         ASSERT_TRUE(text.starts_with("hit,"));
         const char* at = text.c_str() + 3;
         for (int n = 0; n < 8; ++n) {
@@ -142,7 +155,7 @@ TEST(RayLine, SaysWhatIsWrong) {
         const char* line;
         const char* part;
     };
-    for (const auto& [line, part] :
+    for (const Case& wrong :
          {Case{"1 2 3 4 5", "5 numbers where a ray has 6"}, Case{"1", "1 number where"},
           Case{"1 2 3 4 5 6 7 8", "8 numbers"}, Case{"a 2 3 4 5 6", "\"a\" is not a number"},
           Case{"1 2 3 4 5 inf", "not finite"}, Case{"1 2 3 4 5 -nan", "not finite"},
@@ -150,8 +163,9 @@ TEST(RayLine, SaysWhatIsWrong) {
           Case{"1,,2 3 4 5 6", "missing before a comma"},
           Case{"1 2 3 4 5 6,", "missing after a comma"}, Case{"1 2 3 4 5 0x", "is not a number"},
           Case{"1 2 3 4 5 0x-1", "is not a number"}, Case{"1 2 3 4 5 0x0x1", "is not a number"}}) {
-        const std::string what = tests::error_line([&] { static_cast<void>(parse_ray(line)); });
-        EXPECT_NE(what.find(part), std::string::npos) << line << ": " << what;
+        const std::string what =
+            tests::error_line([&] { static_cast<void>(parse_ray(wrong.line)); });
+        EXPECT_NE(what.find(wrong.part), std::string::npos) << wrong.line << ": " << what;
     }
 }
 

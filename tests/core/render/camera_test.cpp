@@ -109,9 +109,9 @@ TEST(Camera, AConeHoldsTheRaysOfItsRectangle) {
     constexpr int width = 200, height = 120;
     for (const Camera& camera : cameras()) {
         const View view = make_view(camera);
-        for (const PixelRect& rect : {PixelRect{0, 0, 16, 16}, PixelRect{96, 48, 112, 64},
-                                      PixelRect{192, 112, 200, 120}, PixelRect{37, 11, 38, 12},
-                                      PixelRect{64, 0, 128, 64}, PixelRect{0, 0, 200, 120}}) {
+        for (const PixelRect& rect :
+             {PixelRect{0, 0, 16, 16}, PixelRect{96, 48, 112, 64}, PixelRect{192, 112, 200, 120},
+              PixelRect{37, 11, 38, 12}, PixelRect{64, 0, 128, 64}, PixelRect{0, 0, 200, 120}}) {
             const Cone cone = cone_around(view, width, height, rect);
             EXPECT_EQ(cone.apex, camera.position);
             for (int j = rect.y0; j < rect.y1; ++j) {

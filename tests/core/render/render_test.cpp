@@ -27,11 +27,19 @@ Scene mixed_scene() {
     scene.threshold = 0.5;
     scene.camera = Camera{{0.5, 1, 7}, {0, 0, 0}, {0, 1, 0}, 40};
     scene.elements = {
-        {.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0.4, 1}, 1.3}, .color = {0.9, 0.7, 0.1}, .width = 0.4},
-        {.skeleton = SegmentSkeleton{{-1.5, -1, 0}, {1.5, 1, 0.5}}, .color = {0.1, 0.4, 0.9}, .width = 0.5},
-        {.skeleton = PointSkeleton{{0.3, 0.9, 0.6}}, .color = {0.8, 0.1, 0.2},
-         .kernel = KernelKind::wyvill, .width = 1.1},
-        {.skeleton = PointSkeleton{{-0.9, 0.8, 0.2}}, .kernel = KernelKind::nishimura, .width = 1.3},
+        {.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0.4, 1}, 1.3},
+         .color = {0.9, 0.7, 0.1},
+         .width = 0.4},
+        {.skeleton = SegmentSkeleton{{-1.5, -1, 0}, {1.5, 1, 0.5}},
+         .color = {0.1, 0.4, 0.9},
+         .width = 0.5},
+        {.skeleton = PointSkeleton{{0.3, 0.9, 0.6}},
+         .color = {0.8, 0.1, 0.2},
+         .kernel = KernelKind::wyvill,
+         .width = 1.1},
+        {.skeleton = PointSkeleton{{-0.9, 0.8, 0.2}},
+         .kernel = KernelKind::nishimura,
+         .width = 1.3},
         {.skeleton = PointSkeleton{{0.4, 0.3, 1}}, .strength = -0.8, .width = 0.5},
         {.skeleton = PointSkeleton{{3, -2, -40}}, .width = 2},
         {.skeleton = PointSkeleton{{0, 0, 3}}, .visible = false},
@@ -39,9 +47,11 @@ Scene mixed_scene() {
     return scene;
 }
 
-constexpr int frame_width = 150, frame_height = 90;  // no multiples of a tile, several regions across 64
+constexpr int frame_width = 150,
+              frame_height = 90;  // no multiples of a tile, several regions across 64
 
-Picture picture_of(const Scene& scene, const char* method = "proved", int w = frame_width, int h = frame_height) {
+Picture picture_of(const Scene& scene, const char* method = "proved", int w = frame_width,
+                   int h = frame_height) {
     Picture picture;
     picture.field = std::make_shared<const Field>(compile(scene));
     picture.view = make_view(camera_of(scene, *picture.field, w, h));
@@ -102,8 +112,10 @@ TEST(Render, PixelsAreTheAnswersOfTheirRays) {
                 const Interval<double> t = answer.isolation.t;
                 ASSERT_FALSE(is_empty(intersection(canvas.frame.t(p), t))) << i << ", " << j;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    ASSERT_NEAR(canvas.frame.surface[p].normal[axis], answer.surface.normal[axis], 1e-4);
-                    ASSERT_NEAR(canvas.frame.surface[p].color[axis], answer.surface.color[axis], 1e-4);
+                    ASSERT_NEAR(canvas.frame.surface[p].normal[axis], answer.surface.normal[axis],
+                                1e-4);
+                    ASSERT_NEAR(canvas.frame.surface[p].color[axis], answer.surface.color[axis],
+                                1e-4);
                 }
                 ASSERT_EQ(canvas.frame.color[p],
                           shade(picture.lighting, ray.direction, canvas.frame.surface[p]));

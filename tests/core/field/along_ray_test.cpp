@@ -1,0 +1,335 @@
+// s and s' of each shape along rays, against 256 bits, and what along_ray claims of whole spans.
+#include "core/field/along_ray.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/trace/clip.h"
+#include "tests/reference/along_ray.h"
+#include "tests/reference/multiprecision.h"
+#include "tests/tools/nasty_rays.h"
+#include "tests/tools/random_scene.h"
+#include "tests/tools/seed.h"
+
+namespace ivory {
+namespace {
+
+using reference::Germ;
+using reference::Real;
+using reference::RealInterval;
+using reference::Triple;
+using tools::Random;
+using tools::RayKind;
+
+// s and s' of one element along a ray, to 256 bits.
+class ExactSquare {
+  public:
+    ExactSquare(const Element& element, const Vec3d& origin, const Vec3d& direction)
+        : shape_(std::visit(
+              [&](const auto& skeleton) {
+                  return along(skeleton, origin, direction, RealInterval(element.width));
+              },
+              element.skeleton)) {}
+
+    [[nodiscard]] Germ<RealInterval> at(double t) const {
+        return std::visit([&](const auto& shape) { return shape.at(RealInterval(t)); }, shape_);
+    }
+
+  private:
+    using Vector = Triple<RealInterval>;
+    using Shape = std::variant<reference::PointAlongRay<RealInterval>,
+                               reference::SegmentAlongRay<RealInterval>,
+                               reference::CircleAlongRay<RealInterval>>;
+
+    static Vector over(const Vector& a, const RealInterval& x) {
+        return {a[0] / x, a[1] / x, a[2] / x};
+    }
+    static Vector difference(const Vec3d& a, const Vec3d& b) {
+        return reference::minus(reference::triple<RealInterval>(a),
+                                reference::triple<RealInterval>(b));
+    }
+    static Shape along(const PointSkeleton& point, const Vec3d& o, const Vec3d& d,
+                       const RealInterval& w) {
+        return reference::PointAlongRay<RealInterval>(over(difference(o, point.position), w),
+                                                      over(reference::triple<RealInterval>(d), w));
+    }
+    static Shape along(const SegmentSkeleton& segment, const Vec3d& o, const Vec3d& d,
+                       const RealInterval& w) {
+        if (segment.a == segment.b) return along(PointSkeleton{segment.a}, o, d, w);
+        return reference::SegmentAlongRay<RealInterval>(
+            over(difference(o, segment.a), w), over(difference(o, segment.b), w),
+            over(difference(segment.b, segment.a), w), over(reference::triple<RealInterval>(d), w));
+    }
+    static Shape along(const CircleSkeleton& circle, const Vec3d& o, const Vec3d& d,
+                       const RealInterval& w) {
+        return reference::CircleAlongRay<RealInterval>(
+            over(difference(o, circle.center), w),
+            reference::ElementAlongRay<RealInterval>::unit_normal(circle.normal),
+            RealInterval(circle.radius) / w, over(reference::triple<RealInterval>(d), w));
+    }
+
+    Shape shape_;
+};
+
+bool meets(const Interval<double>& bounds, const RealInterval& exact) {
+    return Real(bounds.lo) <= exact.hi && exact.lo <= Real(bounds.hi);
+}
+
+std::string text(const Interval<double>& a) {
+    char line[96];
+    std::snprintf(line, sizeof line, "[%.17g, %.17g]", a.lo, a.hi);
+    return line;
+}
+
+// One element along one ray over a span, with what is exactly so.
+struct View {
+    ElementAlongRay along;
+    ExactSquare exact;
+    Interval<double> span;
+    double cut;
+};
+
+// Places to look at: the ends, where pieces and the active part begin and end, the foot, others.
+std::vector<double> places(const View& view, Random& random) {
+    const ElementAlongRay& e = view.along;
+    std::vector<double> t{view.span.lo, view.span.hi};
+    const auto around = [&](double x) {
+        const double off = std::exp(random.uniform(-36, -2)) * std::max(std::abs(x), 1e-3);
+        for (const double y : {x, next_down(x), next_up(x), x - off, x + off}) t.push_back(y);
+    };
+    if (!is_empty(e.active)) {
+        around(e.active.lo);
+        around(e.active.hi);
+    }
+    if (e.form == ElementAlongRay::Form::squares) {
+        for (std::size_t i = 0; i < e.piece_count; ++i) {
+            around(e.pieces[i].where.lo);
+            around(e.pieces[i].where.hi);
+            around(e.pieces[i].square.reference);
+        }
+    } else if (e.form == ElementAlongRay::Form::circle) {
+        around(e.circle.across.reference);
+    }
+    for (int i = 0; i < 8; ++i) t.push_back(random.uniform(view.span.lo, view.span.hi));
+    std::erase_if(t, [&](double x) { return !(view.span.lo <= x && x <= view.span.hi); });
+    std::sort(t.begin(), t.end());
+    t.erase(std::unique(t.begin(), t.end()), t.end());
+    return t;
+}
+
+// Calls check(view, random) for every element of some scenes along nasty rays, over spans of many
+// lengths that come near the element.
+template <class Check>
+void for_views(std::uint64_t own_seed, const tools::SceneRecipe& recipe, const Check& check) {
+    const std::uint64_t first = tools::announced_seed(own_seed);
+    for (std::uint64_t seed = first; seed < first + 3; ++seed) {
+        const Scene scene = random_scene(recipe, seed);
+        const Field field = compile(scene);
+        Random random(seed);
+        for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
+            for (const Ray& own : nasty_rays(scene, static_cast<RayKind>(kind), 8, seed)) {
+                const ScaledRay ray = scaled(own);
+                Interval<double> span = clip(ray, field.reach_box);
+                if (is_empty(span) || !(span.hi < 1e90)) continue;
+                if (random.chance(0.5)) {  // a part of it
+                    const double length = width(span) * std::exp(random.uniform(-12, 0));
+                    span.lo = random.uniform(span.lo, span.hi - length);
+                    span.hi = span.lo + length;
+                }
+                if (!(span.lo < span.hi)) continue;
+                for (std::size_t i = 0; i < field.size(); ++i) {
+                    const double cut = random.chance(0.5) ? field.cut[i] : random.uniform(0, 4);
+                    View view{{},
+                              {scene.elements[field.source[i]], ray.origin, ray.direction},
+                              span,
+                              cut};
+                    along_ray(field, i, ray.origin, ray.direction, span, cut, view.along);
+                    SCOPED_TRACE("seed " + std::to_string(seed) + ", " +
+                                 std::string(tools::ray_kind_words[kind]) + ", element " +
+                                 std::to_string(i) + ", span " + text(span));
+                    check(view, random);
+                    if (testing::Test::HasFatalFailure()) return;
+                }
+            }
+        }
+    }
+}
+
+// What is enclosed at t is what some piece in force there says, or the circle.
+void check_at(const View& view, double t) {
+    const ElementAlongRay& e = view.along;
+    const Germ<RealInterval> exact = view.exact.at(t);
+    SCOPED_TRACE("t = " + std::to_string(t));
+    if (e.form == ElementAlongRay::Form::circle) {
+        const CircleAlongRay::At at = e.circle.at(t);
+        ASSERT_TRUE(meets(at.s, exact.value)) << text(at.s) << to_string(exact.value.lo);
+        ASSERT_TRUE(meets(at.ds, exact.slope)) << text(at.ds) << to_string(exact.slope.lo);
+        return;
+    }
+    bool covered = false, held = false;
+    for (std::size_t i = 0; i < e.piece_count; ++i) {
+        const Piece& piece = e.pieces[i];
+        if (!contains(piece.where, t)) continue;
+        covered = true;
+        const SquareAt at = piece.square.at(t);
+        held = held || (meets(at.value(), exact.value) && meets(at.slope(), exact.slope));
+        ASSERT_LE(piece.square.vertex, at.s + at.s_radius);
+        ASSERT_LE(piece.square.least, at.s + at.s_radius);
+    }
+    ASSERT_TRUE(covered) << "no piece";
+    ASSERT_TRUE(held) << to_string(exact.value.lo) << ' ' << to_string(exact.slope.lo);
+}
+
+TEST(AlongRay, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
+    for (const double scale : {1.0, 1e-6, 1e6}) {
+        for_views(21, {.elements = 5, .scale = scale}, [](const View& view, Random& random) {
+            ASSERT_NE(view.along.form, ElementAlongRay::Form::unbounded);
+            for (const double t : places(view, random)) {
+                ASSERT_NO_FATAL_FAILURE(check_at(view, t));
+            }
+        });
+    }
+}
+
+TEST(AlongRay, SquareAndSlopeHoldTheExactOnesFarFromTheOrigin) {
+    for_views(22, {.elements = 5, .shift = 1e6}, [](const View& view, Random& random) {
+        for (const double t : places(view, random)) ASSERT_NO_FATAL_FAILURE(check_at(view, t));
+    });
+}
+
+TEST(AlongRay, CutIsExceededOutsideOfTheActivePart) {
+    for_views(23, {.elements = 5}, [](const View& view, Random& random) {
+        const Interval<double>& active = view.along.active;
+        if (!is_empty(active)) {
+            ASSERT_TRUE(is_subset(active, view.span)) << text(active);
+        }
+        for (const double t : places(view, random)) {
+            if (contains(active, t)) continue;
+            ASSERT_TRUE(view.exact.at(t).value.hi >= Real(view.cut))
+                << "t = " << t << ", active " << text(active) << ", cut " << view.cut;
+        }
+    });
+}
+
+TEST(AlongRay, LeastIsBelowEverySquareOfTheSpan) {
+    for_views(24, {.elements = 5}, [](const View& view, Random& random) {
+        for (const double t : places(view, random)) {
+            const RealInterval s = view.exact.at(t).value;
+            ASSERT_TRUE(s.hi >= Real(view.along.least))
+                << "t = " << t << ", s = " << s.lo.to_double() << ", least " << view.along.least
+                << ", cut " << view.cut << ", active " << text(view.along.active);
+        }
+    });
+}
+
+// v(t) = (t, 0, t - 15) and r = 10, so that s = (t - 10)^2 + (t - 15)^2: 17 at t = 11, where the
+// ray leaves the cylinder outside of which s > cut is known, and least, 12.5, at t = 12.5.
+TEST(AlongRay, LeastAndPeakHoldWhereTheRayComesNearerToACircleOutsideOfTheActivePart) {
+    Scene scene;
+    scene.elements = {{.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, 10}}};
+    const Field field = compile(scene);
+    ElementAlongRay e;
+    along_ray(field, 0, {0, 0, -15}, {1, 0, 1}, {0.0, 20.0}, 1, e);
+    const double s = e.circle.at(12.5).s.hi;
+    EXPECT_NEAR(s, 12.5, 1e-11);
+    EXPECT_LE(e.least, s);
+    EXPECT_GE(e.peak, std::exp(-s));
+}
+
+TEST(AlongRay, PeakIsAboveEveryValueOfTheSpanAndBeyondAboveThoseOutsideOfTheActivePart) {
+    for_views(25, {.elements = 5}, [](const View& view, Random& random) {
+        const ElementAlongRay& e = view.along;
+        for (const double t : places(view, random)) {
+            const RealInterval k = reference::kernel_germ(e.kernel, view.exact.at(t).value).value;
+            ASSERT_TRUE(k.lo <= Real(e.peak)) << "t = " << t << ", peak " << e.peak;
+            if (contains(e.active, t)) continue;
+            const RealInterval f = RealInterval(e.strength) * k;
+            ASSERT_TRUE(meets(e.beyond, f))
+                << "t = " << t << ", F = " << f.lo.to_double() << ", beyond " << text(e.beyond);
+        }
+    });
+}
+
+// Without a kink in between, s' gains between inf s'' and sup s'' times the time.
+TEST(AlongRay, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
+    for_views(26, {.elements = 5}, [](const View& view, Random& random) {
+        const ElementAlongRay& e = view.along;
+        for (int window = 0; window < 3; ++window) {
+            const double length = width(view.span) * std::exp(random.uniform(-14, 0));
+            const double t0 = random.uniform(view.span.lo, view.span.hi - length);
+            const double t1 = std::min(t0 + length, view.span.hi);
+            if (!(t0 < t1)) continue;
+            std::vector<double> t{t0, t1};
+            for (int i = 0; i < 3; ++i) t.push_back(std::min(random.uniform(t0, t1), t1));
+            std::sort(t.begin(), t.end());
+            SCOPED_TRACE(text({t0, t1}));
+            Interval<double> s = Interval<double>::empty_set(), ds = s, dds = s;
+            if (e.form == ElementAlongRay::Form::circle) {
+                const auto range = e.circle.over(t0, t1, e.circle.at(t0), e.circle.at(t1));
+                s = range.s, ds = range.ds, dds = range.dds;
+            } else {
+                for (std::size_t i = 0; i < e.piece_count; ++i) {
+                    const Piece& piece = e.pieces[i];
+                    const double from = std::max(t0, piece.where.lo);
+                    const double to = std::min(t1, piece.where.hi);
+                    if (!(from <= to)) continue;
+                    const SquareAt a = piece.square.at(from), b = piece.square.at(to);
+                    s = hull(s, piece.square.over(a, b));
+                    ds = hull(ds, Interval<double>(a.slope().lo, b.slope().hi));
+                    dds = hull(dds, piece.square.curvature());
+                }
+            }
+            std::vector<Germ<RealInterval>> exact;
+            for (const double x : t) exact.push_back(view.exact.at(x));
+            for (std::size_t i = 0; i < t.size(); ++i) {
+                ASSERT_TRUE(meets(s, exact[i].value)) << "s at " << t[i] << ' ' << text(s);
+                ASSERT_TRUE(meets(ds, exact[i].slope)) << "s' at " << t[i] << ' ' << text(ds);
+                if (i == 0 || t[i] == t[i - 1]) continue;
+                const RealInterval time = RealInterval(t[i]) - RealInterval(t[i - 1]);
+                const RealInterval mean = (exact[i].slope - exact[i - 1].slope) / time;
+                ASSERT_TRUE(meets(dds, mean)) << "s'' at " << t[i] << ' ' << text(dds) << ' '
+                                              << to_string(mean.lo) << to_string(mean.hi);
+            }
+        }
+    });
+}
+
+TEST(AlongRay, EnclosuresAreAFewUnitsWide) {
+    for_views(27, {.elements = 5}, [](const View& view, Random& random) {
+        for (const double t : places(view, random)) {
+            const double s = view.exact.at(t).value.lo.to_double();
+            if (s > 100) continue;
+            const ElementAlongRay& e = view.along;
+            if (e.form == ElementAlongRay::Form::circle) {
+                // The distance errs by units of the sizes of circle and offset.
+                const double size = s + e.circle.radius.hi * e.circle.radius.hi + 1;
+                EXPECT_LE(width(e.circle.at(t).s), 1e-12 * size) << s;
+            }
+            for (std::size_t i = 0; i < e.piece_count; ++i) {
+                if (!contains(e.pieces[i].where, t)) continue;
+                const MovingSquare& square = e.pieces[i].square;
+                const double reach = square.rho + square.kappa * std::abs(t - square.reference);
+                EXPECT_LE(square.at(t).s_radius, 1e-13 * (reach * reach + 1)) << s;
+            }
+        }
+    });
+}
+
+TEST(AlongRay, NumbersBeyondTheLemmaGiveTheFormThatClaimsNothing) {
+    Scene scene;
+    scene.elements = {{.skeleton = PointSkeleton{{0, 0, 0}}, .width = 1e-120}};
+    const Field field = compile(scene);
+    ElementAlongRay e;
+    along_ray(field, 0, {0, 0, -5}, {0, 0, 1}, {0.0, 10.0}, 1, e);
+    EXPECT_EQ(e.form, ElementAlongRay::Form::unbounded);
+    EXPECT_EQ(e.active, Interval<double>::entire());
+    EXPECT_EQ(e.least, 0);
+    EXPECT_EQ(e.peak, 1);
+}
+
+}  // namespace
+}  // namespace ivory
