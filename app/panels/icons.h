@@ -1,0 +1,34 @@
+// The signs on buttons and rows, drawn as lines: sharp at every scale, in the colour of the text.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+
+namespace ivory {
+
+enum class Icon : std::uint8_t {
+    point,
+    segment,
+    circle,
+    eye,
+    eye_closed,
+    trash,
+    copy,
+    up,
+    down,
+    undo,
+    redo,
+    frame,
+    skeleton,
+    theme,
+    cross,
+    plus,
+    folder,
+    file,
+};
+
+// Within the square of that side around the middle.
+void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 color);
+
+}  // namespace ivory

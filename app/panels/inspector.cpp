@@ -1,0 +1,174 @@
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "app/panels/actions.h"
+#include "app/panels/fields.h"
+#include "app/panels/parts.h"
+#include "app/panels/theme.h"
+#include "core/scene/text.h"
+
+namespace ivory {
+
+namespace {
+
+// One pixel of a field's drag is about one pixel of the picture.
+double step_in_scene(const ViewerState& state) {
+    const double length = state.projection().length_of_pixel(state.view.camera.target) * state.scale;
+    const double exponent = std::round(std::log10(length));
+    return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
+}
+
+// A field of the selected element's skeleton.
+template <class Shape>
+void skeleton_vector(ViewerState& state, const char* name, const char* text, const std::string& what,
+                     std::size_t element, Vec3d Shape::*member, double step) {
+    label(state, text);
+    const Vec3d value = std::get<Shape>(state.document.scene().elements[element].skeleton).*member;
+    vector_fields(state, std::string("element.") + name, what, value, step,
+                  [=](Scene& scene, const Vec3d& changed) {
+                      std::get<Shape>(scene.elements[element].skeleton).*member = changed;
+                  });
+}
+
+void draw_skeleton(ViewerState& state, std::size_t element, const std::string& name) {
+    const Skeleton skeleton = state.document.scene().elements[element].skeleton;
+    const double step = step_in_scene(state);
+    if (std::holds_alternative<PointSkeleton>(skeleton)) {
+        skeleton_vector(state, "position", "Position", "Move " + name, element,
+                        &PointSkeleton::position, step);
+    } else if (std::holds_alternative<SegmentSkeleton>(skeleton)) {
+        skeleton_vector(state, "a", "End a", "Move end a of " + name, element, &SegmentSkeleton::a, step);
+        skeleton_vector(state, "b", "End b", "Move end b of " + name, element, &SegmentSkeleton::b, step);
+    } else if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
+        skeleton_vector(state, "center", "Center", "Move " + name, element, &CircleSkeleton::center, step);
+        skeleton_vector(state, "normal", "Normal", "Tilt " + name, element, &CircleSkeleton::normal, 0.01);
+        label(state, "Radius");
+        number_field(state,
+                     {.id = "element.radius", .what = "Change radius of " + name,
+                      .value = circle->radius, .step = step, .least = 0},
+                     field_width(), [=](Scene& scene, double radius) {
+                         std::get<CircleSkeleton>(scene.elements[element].skeleton).radius = radius;
+                     });
+    }
+}
+
+// One of three words, all of them in sight.
+void draw_kernel(ViewerState& state, std::size_t element, const std::string& name) {
+    struct Choice {
+        KernelKind kind;
+        const char* label;
+    };
+    constexpr std::array choices = {Choice{KernelKind::blinn, "Blinn"},
+                                    Choice{KernelKind::nishimura, "Nishimura"},
+                                    Choice{KernelKind::wyvill, "Wyvill"}};
+    const Palette& colors = palette(state.theme);
+    label(state, "Kernel");
+    const KernelKind now = state.document.scene().elements[element].kernel;
+    const float width = field_width();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float rounding = ImGui::GetStyle().FrameRounding;
+    list.AddRectFilled(at, {at.x + width, at.y + height}, packed(colors.field), rounding);
+
+    float texts = 0;
+    for (const Choice& choice : choices) texts += ImGui::CalcTextSize(choice.label).x;
+    const float pad = (width - texts) / (2 * static_cast<float>(choices.size()));
+    for (const Choice& choice : choices) {
+        const ImVec2 text = ImGui::CalcTextSize(choice.label);
+        ImGui::PushID(choice.label);
+        const bool clicked = ImGui::InvisibleButton("##kernel", {text.x + 2 * pad, height});
+        const std::string word = kernel_word(choice.kind);
+        state.widgets.add("element.kernel." + word, WidgetKind::button);
+        const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+        const bool on = choice.kind == now;
+        if (on) {
+            list.AddRectFilled(lo, hi, packed(colors.accent), rounding);
+        } else if (ImGui::IsItemHovered()) {
+            list.AddRectFilled(lo, hi, packed(colors.field_hovered), rounding);
+        }
+        list.AddText({std::floor(lo.x + pad), std::floor(0.5f * (lo.y + hi.y - text.y))},
+                     packed(on ? colors.accent_text : colors.text), choice.label);
+        ImGui::PopID();
+        ImGui::SameLine(0, 0);
+        if (clicked)
+            edit_scene(state, "Change kernel of " + name,
+                       [&](Scene& scene) { scene.elements[element].kernel = choice.kind; });
+    }
+    const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
+    state.widgets.add("element.kernel", WidgetKind::choice,
+                      {whole(at.x), whole(at.y), whole(width), whole(height)});
+    ImGui::NewLine();
+}
+
+void draw_element(ViewerState& state, std::size_t element) {
+    const Element now = state.document.scene().elements[element];
+    const std::string name = names_of(state)[element];
+
+    label(state, "Name");
+    std::string text = name;
+    const bool wanted = std::exchange(state.panels.name_wanted, false);
+    ImGui::PushID(static_cast<int>(element));
+    if (text_field(state, "element.name", text, field_width(), "", wanted))
+        edit_scene(state, "Rename " + name,
+                   [&](Scene& scene) { scene = with_name(std::move(scene), element, text); });
+    ImGui::PopID();
+
+    label(state, "Color");
+    const float toggle_width = ImGui::GetFrameHeight() + px(state, 6) + ImGui::CalcTextSize("Visible").x;
+    color_field(state, "element.color", "Change color of " + name, now.color,
+                field_width() - toggle_width - px(state, 12), [=](Scene& scene, const Color& color) {
+                    scene.elements[element].color = color;
+                });
+    ImGui::SameLine(0, px(state, 12));
+    if (toggle(state, "element.visible", "Visible", now.visible)) set_visible(state, element, !now.visible);
+
+    draw_kernel(state, element, name);
+    label(state, "Strength");
+    number_field(state,
+                 {.id = "element.strength", .what = "Change strength of " + name,
+                  .value = now.strength, .step = 0.01},
+                 field_width(),
+                 [=](Scene& scene, double strength) { scene.elements[element].strength = strength; });
+    label(state, "Width");
+    const double step = step_for(now.width);
+    number_field(state,
+                 {.id = "element.width", .what = "Change width of " + name, .value = now.width,
+                  .step = step, .least = step},
+                 field_width(),
+                 [=](Scene& scene, double width) { scene.elements[element].width = width; });
+    draw_skeleton(state, element, name);
+}
+
+}  // namespace
+
+void draw_inspector(ViewerState& state) {
+    const auto selected = state.document.selected();
+    if (!selected) {
+        section(state, "Element");
+        ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).quiet);
+        ImGui::TextWrapped("Nothing selected. Click the surface, or an element in the list.");
+        ImGui::PopStyleColor();
+        return;
+    }
+    const Element& element = state.document.scene().elements[*selected];
+    const std::string shape = shape_word(element.skeleton);
+    section(state, (std::string(1, static_cast<char>(shape[0] - 'a' + 'A')) + shape.substr(1)).c_str());
+    draw_element(state, *selected);
+}
+
+void draw_inspector_panel(ViewerState& state, const WindowRect& rect) {
+    begin_panel("inspector", rect);
+    draw_inspector(state);
+    draw_surface(state);
+    draw_lights(state);
+    ImGui::End();
+}
+
+}  // namespace ivory

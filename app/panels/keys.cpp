@@ -1,0 +1,47 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels/actions.h"
+#include "app/panels/panels.h"
+
+namespace ivory {
+
+namespace {
+
+bool same(const Shortcut& shortcut, const KeyPress& press) {
+    return shortcut.key != Key::none && shortcut.key == press.key &&
+           shortcut.modifiers == press.modifiers;
+}
+
+void press(ViewerState& state, const KeyPress& press) {
+    if (press.key == Key::escape) {
+        if (state.help_shown) state.help_shown = false;
+        else if (state.message.error) state.message = {};
+        else state.document.select(std::nullopt);
+        return;
+    }
+    const Shortcut second_redo{Key::y, {.control = true}};
+    if (same(second_redo, press)) {
+        run(state, Action::redo);
+        return;
+    }
+    // held down, only a step back or forth goes on
+    for (const ActionInfo& action : all_actions()) {
+        const bool repeats = action.action == Action::undo || action.action == Action::redo;
+        if (same(action.shortcut, press) && (repeats || !press.repeated)) run(state, action.action);
+    }
+}
+
+}  // namespace
+
+void handle_keys(ViewerState& state, const Input& input) {
+    // keys belong to a drag, a text field or a dialog first
+    if (state.document.dragging() || ImGui::GetIO().WantTextInput) return;
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) return;
+    if (state.panels.question || state.panels.browser.mode != FileBrowser::Mode::closed) return;
+    for (const KeyPress& key : input.pressed) press(state, key);
+    if (input.text.find(U'?') != std::u32string::npos) run(state, Action::help);
+}
+
+}  // namespace ivory

@@ -1,0 +1,80 @@
+// What the panels remember from one frame to the next, and nobody else reads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace ivory {
+
+// The number that is being typed.
+struct TypedNumber {
+    std::string id;      // of its control
+    std::string text;    // as it stands in the field
+    std::string before;
+    int frames = 0;  // since it was opened
+    bool focused = false;
+    bool drawn = true;  // in this frame
+};
+
+// The number, slider or colour that is being dragged.
+struct DraggedField {
+    std::string id;
+    double start = 0;  // the number when the drag began
+    double way = 0;    // pixels, fewer with Shift
+    float last_x = 0;  // of the pointer
+    bool begun = false, cancelled = false;
+};
+
+struct TypedText {
+    std::string id, text;
+};
+
+// What waits for the answer to the question about unsaved changes.
+struct Pending {
+    enum class Kind : std::uint8_t { open, start_anew, quit };
+    Kind kind = Kind::quit;
+    std::filesystem::path path;  // of open
+};
+
+struct FileBrowser {
+    enum class Mode : std::uint8_t { closed, open, save };
+    struct Entry {
+        std::string name;
+        bool folder = false;
+    };
+    Mode mode = Mode::closed;
+    std::filesystem::path folder;
+    std::vector<Entry> entries;  // folders first
+    std::string folder_text, name;
+    std::string fault;             // one line; empty: none
+    bool just_opened = false, name_clicked = false;
+    std::optional<Pending> after;  // when it has been saved
+};
+
+struct PanelMemory {
+    std::optional<TypedNumber> number;
+    bool type_next = false;  // Tab: the next number field is to be typed into
+    DraggedField dragged;
+    TypedText text;
+    bool name_wanted = false;  // the name of the selected element is to be typed
+
+    std::optional<Pending> question;
+    bool question_shown = false;
+    FileBrowser browser;
+
+    std::optional<std::size_t> row_shown;  // the selection that the list last scrolled to
+
+    // Derived from a scene, kept until there is another one.
+    std::shared_ptr<const Scene> named, ranged;
+    std::vector<std::string> names;  // element_names of `named`
+    double most_threshold = 1;       // of `ranged`: the slider's right end
+};
+
+}  // namespace ivory

@@ -1,0 +1,222 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "app/panels/actions.h"
+#include "app/panels/fields.h"
+#include "app/panels/parts.h"
+#include "app/panels/theme.h"
+#include "core/render/shade.h"
+#include "core/scene/text.h"
+
+namespace ivory {
+
+namespace {
+
+constexpr double row_height = 28;  // pixels at scale 1
+constexpr const char* dragged_row = "row";
+
+Icon shape_icon(const Skeleton& skeleton) {
+    if (std::holds_alternative<PointSkeleton>(skeleton)) return Icon::point;
+    if (std::holds_alternative<SegmentSkeleton>(skeleton)) return Icon::segment;
+    return Icon::circle;
+}
+
+// A button that adds: the shape's sign and its name.
+void add_button(ViewerState& state, const char* id, const char* label, Icon icon, ElementShape shape,
+                float width) {
+    const Palette& colors = palette(state.theme);
+    const bool clicked = text_button(state, id, "", width);
+    const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+    tooltip((std::string("Add a ") + shape_word(new_element(shape, {}, 1, 0).skeleton)).c_str());
+    const float side = px(state, 11), gap = px(state, 6), middle = 0.5f * (lo.y + hi.y);
+    const ImVec2 text = ImGui::CalcTextSize(label);
+    const float x = std::floor(0.5f * (lo.x + hi.x - side - gap - text.x));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    draw_icon(list, icon, {x + 0.5f * side, middle}, side, packed(colors.accent));
+    list.AddText({x + side + gap, std::floor(middle - 0.5f * text.y)}, packed(colors.text), label);
+    if (clicked) add_element(state, shape);
+}
+
+void draw_add_buttons(ViewerState& state) {
+    const float spacing = px(state, 4);
+    const float width = std::floor((field_width() - 2 * spacing) / 3);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(state, 4), ImGui::GetStyle().FramePadding.y});
+    add_button(state, "add.point", "Point", Icon::point, ElementShape::point, width - px(state, 8));
+    ImGui::SameLine(0, spacing);
+    add_button(state, "add.segment", "Segment", Icon::segment, ElementShape::segment,
+               width + px(state, 16));
+    ImGui::SameLine(0, spacing);
+    add_button(state, "add.circle", "Circle", Icon::circle, ElementShape::circle,
+               field_width());
+    ImGui::PopStyleVar();
+}
+
+// Rows can be dragged to another place of the list.
+void drag_and_drop(ViewerState& state, std::size_t row) {
+    if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoPreviewTooltip)) {
+        ImGui::SetDragDropPayload(dragged_row, &row, sizeof(row));
+        ImGui::EndDragDropSource();
+    }
+    if (ImGui::BeginDragDropTarget()) {
+        const ImGuiPayload* const payload = ImGui::AcceptDragDropPayload(
+            dragged_row, ImGuiDragDropFlags_AcceptNoDrawDefaultRect | ImGuiDragDropFlags_AcceptBeforeDelivery);
+        if (payload != nullptr) {
+            const std::size_t from = *static_cast<const std::size_t*>(payload->Data);
+            const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+            const float y = from < row ? hi.y : lo.y;
+            ImGui::GetWindowDrawList()->AddLine({lo.x, y}, {hi.x, y},
+                                                packed(palette(state.theme).accent), px(state, 2));
+            if (payload->IsDelivery()) move_element(state, from, row);
+        }
+        ImGui::EndDragDropTarget();
+    }
+}
+
+void draw_row(ViewerState& state, std::size_t row, float width) {
+    const Palette& colors = palette(state.theme);
+    // by value: a click may change the scene
+    const Element element = state.document.scene().elements[row];
+    const std::string name = names_of(state)[row];
+    const float height = px(state, row_height);
+    const bool selected = state.document.selected() == row;
+
+    ImGui::PushID(static_cast<int>(row));
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (selected) {
+        list.AddRectFilled(at, {at.x + width, at.y + height}, packed(colors.selected_row),
+                           px(state, 4));
+    } else if (ImGui::IsWindowHovered() &&
+               ImGui::IsMouseHoveringRect(at, {at.x + width, at.y + height})) {
+        list.AddRectFilled(at, {at.x + width, at.y + height}, packed(colors.hovered_row),
+                           px(state, 4));
+    }
+    const bool clicked = ImGui::InvisibleButton("##row", {width - height, height});
+    state.widgets.add("row." + name, WidgetKind::row);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+        state.panels.name_wanted = true;
+    drag_and_drop(state, row);
+
+    const float alpha = element.visible ? 1 : 0.45f;
+    const float middle = at.y + 0.5f * height;
+    const Rgba8 c = to_srgb(element.color);
+    const ImU32 swatch = ImGui::ColorConvertFloat4ToU32({static_cast<float>(c.r) / 255,
+                                                         static_cast<float>(c.g) / 255,
+                                                         static_cast<float>(c.b) / 255, alpha});
+    list.AddCircleFilled({at.x + px(state, 14), middle}, px(state, 5.5), swatch);
+    draw_icon(list, shape_icon(element.skeleton), {at.x + px(state, 34), middle}, px(state, 12),
+              packed(colors.quiet, alpha));
+    const float text_left = at.x + px(state, 48);
+    list.PushClipRect({text_left, at.y}, {at.x + width - height, at.y + height}, true);
+    list.AddText({text_left, std::floor(middle - 0.5f * ImGui::GetFontSize())},
+                 packed(colors.text, alpha), printable(name, 200).c_str());
+    list.PopClipRect();
+
+    ImGui::SameLine(0, 0);
+    const bool eye_clicked = ImGui::InvisibleButton("##eye", {height, height});
+    state.widgets.add("row." + name + ".visible", WidgetKind::toggle, element.visible);
+    const bool lit = ImGui::IsItemHovered() || !element.visible || selected;
+    draw_icon(list, element.visible ? Icon::eye : Icon::eye_closed,
+              {at.x + width - 0.5f * height, middle}, px(state, 15),
+              packed(ImGui::IsItemHovered() ? colors.text : colors.quiet, lit ? 1 : 0.55f));
+    tooltip(element.visible ? "Hide" : "Show");
+    ImGui::PopID();
+
+    if (clicked) state.document.select(row);
+    if (eye_clicked) set_visible(state, row, !element.visible);
+}
+
+// Rows out of sight are where they would be drawn.
+void record_row(ViewerState& state, std::size_t row, ImVec2 at, float width, float height) {
+    const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
+    const std::string id = "row." + names_of(state)[row];
+    state.widgets.add(id, WidgetKind::row, {whole(at.x), whole(at.y), whole(width - height), whole(height)});
+    state.widgets.add(id + ".visible", WidgetKind::toggle,
+                      {whole(at.x + width - height), whole(at.y), whole(height), whole(height)},
+                      state.document.scene().elements[row].visible);
+}
+
+void scroll_to_selected(ViewerState& state, float height) {
+    const auto selected = state.document.selected();
+    if (state.panels.row_shown == selected) return;
+    state.panels.row_shown = selected;
+    if (!selected) return;
+    const float top = static_cast<float>(*selected) * height;
+    const float room = ImGui::GetWindowHeight();
+    if (top < ImGui::GetScrollY()) ImGui::SetScrollY(top);
+    if (top + height > ImGui::GetScrollY() + room) ImGui::SetScrollY(top + height - room);
+}
+
+void draw_rows(ViewerState& state, float list_height) {
+    ImGui::BeginChild("rows", {0, list_height}, false,
+                      ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoNavFocus);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
+    const float height = px(state, row_height);
+    const float width = field_width();
+    const std::size_t count = state.document.scene().elements.size();
+    if (count == 0) {
+        ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).quiet);
+        ImGui::TextWrapped("An empty scene. Add a point, a segment or a circle to begin.");
+        ImGui::PopStyleColor();
+    }
+    scroll_to_selected(state, height);
+    const ImVec2 start = ImGui::GetCursorScreenPos();
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(count), height);
+    while (clipper.Step())
+        for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row)
+            if (static_cast<std::size_t>(row) < state.document.scene().elements.size())
+                draw_row(state, static_cast<std::size_t>(row), width);
+    // a click may have deleted one
+    const std::size_t left =
+        state.widgets.whole_lists ? std::min(count, state.document.scene().elements.size()) : 0;
+    for (std::size_t row = 0; row < left; ++row)
+        record_row(state, row, {start.x, start.y + static_cast<float>(row) * height}, width, height);
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+}
+
+void draw_row_buttons(ViewerState& state) {
+    const auto selected = state.document.selected();
+    const std::size_t count = state.document.scene().elements.size();
+    const bool first = selected == std::size_t{0};
+    const bool last = selected && *selected + 1 == count;
+    if (icon_button(state, "element.up", Icon::up, "Move up", selected && !first))
+        move_element(state, *selected, *selected - 1);
+    ImGui::SameLine(0, px(state, 2));
+    if (icon_button(state, "element.down", Icon::down, "Move down", selected && !last))
+        move_element(state, *selected, *selected + 1);
+    const float side = ImGui::GetFrameHeight();
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 2 * side - px(state, 2));
+    if (icon_button(state, "element.duplicate", Icon::copy, "Duplicate   Ctrl+D", selected.has_value()))
+        run(state, Action::duplicate);
+    ImGui::SameLine(0, px(state, 2));
+    if (icon_button(state, "element.delete", Icon::trash, "Delete   Del", selected.has_value()))
+        run(state, Action::remove);
+}
+
+}  // namespace
+
+void draw_scene_panel(ViewerState& state, const WindowRect& rect) {
+    begin_panel("scene", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    section(state, "Elements");
+    const std::size_t count = state.document.scene().elements.size();
+    if (count > 0) {
+        const std::string number = std::to_string(count);
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(number.c_str()).x);
+        ImGui::TextDisabled("%s", number.c_str());
+    }
+    draw_add_buttons(state);
+    ImGui::Dummy({0, px(state, 2)});
+    const float below = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
+    draw_rows(state, std::max(px(state, row_height), ImGui::GetContentRegionAvail().y - below));
+    draw_row_buttons(state);
+    ImGui::End();
+}
+
+}  // namespace ivory

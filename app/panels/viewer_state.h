@@ -1,0 +1,63 @@
+// All that the viewer knows and shows: what panels, overlay and bindings read and change.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/document/document.h"
+#include "app/document/orbit.h"
+#include "app/panels/panel_memory.h"
+#include "app/panels/picture_state.h"
+#include "app/panels/widgets.h"
+#include "app/platform/fonts.h"
+#include "app/platform/input.h"
+#include "app/platform/window_rect.h"
+
+namespace ivory {
+
+struct Message {
+    std::string text;  // one line; empty: none
+    bool error = false;
+    double seconds_left = 0;  // until it fades; errors stay until the next message
+};
+
+// The view of the document: not part of it, saved with it.
+struct DocumentView {
+    Camera camera{{0, 0, 8}, {0, 0, 0}};
+    // The file had no camera and the view has not been touched: as long as the scene has not been edited
+    // either, Viewer frames it, anew for each size of the viewport. Whoever changes `camera` ends it.
+    bool automatic = true;
+};
+
+struct ViewerState {
+    Document document;
+    DocumentView view;
+    PictureState picture;  // read only, but for app/viewer
+    Widgets widgets;
+    Fonts fonts;
+
+    // Layout of this frame, frame-buffer pixels; `viewport` is set by draw_panels.
+    WindowSize window;
+    double scale = 1;
+    WindowRect viewport;
+
+    Theme theme = Theme::dark;
+    bool panels_hidden = false;  // Tab
+    bool help_shown = false;     // ?
+    bool skeleton_shown = true;  // the overlay as a whole
+    Message message;
+    PanelMemory panels;
+
+    // Wishes, fulfilled by Viewer at the end of the frame.
+    std::optional<std::filesystem::path> screenshot_wanted;  // F12
+    bool quit = false;  // set only when nothing is left to ask
+
+    // The scene as it would be saved: the document's with the camera of the view.
+    [[nodiscard]] Scene scene_with_view() const;
+    [[nodiscard]] Projection projection() const { return {view.camera, viewport.size()}; }
+    void say(std::string text) { message = {std::move(text), false, 4}; }
+    void say_error(std::string text) { message = {std::move(text), true, 0}; }
+};
+
+}  // namespace ivory

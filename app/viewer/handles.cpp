@@ -1,0 +1,295 @@
+#include "app/viewer/handles.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "app/viewer/handle_motion.h"
+#include "app/viewer/picking.h"
+#include "core/scene/scene_fault.h"
+
+namespace ivory {
+
+namespace {
+
+constexpr double click_slack = 4;          // pixels at scale 1 that a click may move
+constexpr double double_click_time = 0.4;  // seconds from press to press
+constexpr double skeleton_radius = 9;      // pixels at scale 1 from which a skeleton is clicked
+constexpr double fine = 0.1;               // of the pointer's way, with Shift
+
+double distance(WindowPoint a, WindowPoint b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+WindowPoint in_picture(const ViewerState& state, WindowPoint at) {
+    return {at.x - state.viewport.x, at.y - state.viewport.y};
+}
+
+// Where a handle at `seen` can stand apart from those before it.
+WindowPoint free_place(const std::vector<Handle>& before, WindowPoint seen, const WindowRect& viewport,
+                       double scale) {
+    const double apart = 2 * grab_radius * scale;
+    const auto is_free = [&](WindowPoint at) {
+        return viewport.contains(at) &&
+               std::all_of(before.begin(), before.end(),
+                           [&](const Handle& other) { return distance(other.at, at) >= apart; });
+    };
+    if (is_free(seen)) return seen;
+    for (const double ring : {1.3, 2.4, 3.5}) {
+        for (int turn = 0; turn < 8; ++turn) {
+            const double angle = turn * 0.7853981633974483;  // pi / 4
+            const WindowPoint at{std::round(seen.x + ring * apart * std::cos(angle)),
+                                 std::round(seen.y + ring * apart * std::sin(angle))};
+            if (is_free(at)) return at;
+        }
+    }
+    return seen;
+}
+
+std::string drag_name(const std::string& handle, const std::string& element) {
+    if (handle == "normal") return "Tilt " + element;
+    if (handle == "radius") return "Change radius of " + element;
+    if (handle == "a" || handle == "b") return "Move end " + handle + " of " + element;
+    return "Move " + element;
+}
+
+std::optional<int> axis_of(Key key) {
+    if (key == Key::x) return 0;
+    if (key == Key::y) return 1;
+    if (key == Key::z) return 2;
+    return std::nullopt;
+}
+
+void set_camera(ViewerState& state, const Camera& camera) {
+    if (camera == state.view.camera) return;
+    state.view.camera = camera;
+    state.view.automatic = false;
+}
+
+}  // namespace
+
+std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
+    std::vector<Handle> handles;
+    const Scene& scene = state.document.scene();
+    if (element >= scene.elements.size()) return handles;
+    const Projection view = state.projection();
+    for (Grip& grip : grips_of(view, scene.elements[element].skeleton, state.scale)) {
+        const auto in_view = view.project(grip.place);
+        if (!in_view) continue;
+        const WindowPoint seen{in_view->x + state.viewport.x, in_view->y + state.viewport.y};
+        if (!state.viewport.contains(seen)) continue;
+        const WindowPoint at = free_place(handles, seen, state.viewport, state.scale);
+        handles.push_back({element, std::move(grip.name), at, seen, grip.place});
+    }
+    return handles;
+}
+
+void ViewportMouse::update(ViewerState& state, const Input& input) {
+    clock_ += input.seconds;
+    // the drag was ended by something else: another document was opened
+    if (does_ == Does::drag && !state.document.dragging()) let_go();
+
+    const bool has_moved = input.mouse != last_;
+    if (does_ == Does::grab) begin_drag(state);
+    if (does_ == Does::drag || has_moved) move(state, input);
+    hover(state, input);
+    if (does_ == Does::nothing) {
+        press(state, input);
+    } else if (!input.down(button_)) {
+        release(state);
+        hover(state, input);
+    }
+    const bool free = !ImGui::GetIO().WantCaptureMouse && input.mouse_inside &&
+                      state.viewport.contains(input.mouse);
+    if (input.wheel != 0 && free && (does_ == Does::nothing || does_ == Does::press))
+        set_camera(state, zoomed(state.projection(), in_picture(state, input.mouse), input.wheel));
+
+    last_ = input.mouse;
+    was_down_ = input.mouse_down;
+    if (does_ == Does::drag || does_ == Does::grab || does_ == Does::pan)
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    else if (hovered_)
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+}
+
+void ViewportMouse::hover(const ViewerState& state, const Input& input) {
+    hovered_.reset();
+    if (grabbed_ || does_ != Does::nothing) return;
+    if (!state.skeleton_shown || !state.document.selected() || !input.mouse_inside) return;
+    if (ImGui::GetIO().WantCaptureMouse || !state.viewport.contains(input.mouse)) return;
+    double least = grab_radius * state.scale;
+    for (Handle& handle : handles_of(state, *state.document.selected())) {
+        const double away = distance(handle.at, input.mouse);
+        if (away > least) continue;
+        least = away;
+        hovered_ = std::move(handle);
+    }
+}
+
+void ViewportMouse::press(ViewerState& state, const Input& input) {
+    const auto pressed = [&](MouseButton button) {
+        return input.down(button) && !was_down_[static_cast<std::size_t>(button)];
+    };
+    if (!pressed(MouseButton::left) && !pressed(MouseButton::middle)) return;
+    if (ImGui::GetIO().WantCaptureMouse || !state.viewport.contains(input.mouse)) return;
+
+    button_ = pressed(MouseButton::left) ? MouseButton::left : MouseButton::middle;
+    if (button_ == MouseButton::middle) {
+        does_ = Does::pan;
+    } else if (hovered_) {
+        does_ = Does::grab;
+        grabbed_ = std::exchange(hovered_, std::nullopt);
+    } else if (input.modifiers.shift) {
+        does_ = Does::pan;
+    } else {
+        does_ = Does::press;
+    }
+    again_ = button_ == MouseButton::left && clicked_before_ &&
+             clock_ - pressed_when_ <= double_click_time &&
+             distance(pressed_at_, input.mouse) <= click_slack * state.scale;
+    clicked_before_ = false;
+    pressed_at_ = input.mouse;
+    pressed_when_ = clock_;
+}
+
+void ViewportMouse::begin_drag(ViewerState& state) {
+    const Scene& scene = state.document.scene();
+    if (grabbed_->element >= scene.elements.size()) {
+        let_go();
+        return;
+    }
+    // What was typed into a field may just have been taken over: the handle is where it is now.
+    for (const Handle& handle : handles_of(state, grabbed_->element))
+        if (handle.name == grabbed_->name) grabbed_ = handle;
+    start_ = scene.elements[grabbed_->element].skeleton;
+    grabbed_from_ = grabbed_->place;
+    grabbed_at_ = grabbed_->at;
+    dx_ = dy_ = 0;
+    round_ = false;
+    axis_.reset();
+    does_ = Does::drag;
+    state.document.begin_drag(drag_name(grabbed_->name, element_names(scene)[grabbed_->element]));
+}
+
+void ViewportMouse::move(ViewerState& state, const Input& input) {
+    const double dx = input.mouse.x - last_.x, dy = input.mouse.y - last_.y;
+    switch (does_) {
+        case Does::press:
+            if (distance(pressed_at_, input.mouse) <= click_slack * state.scale) return;
+            does_ = Does::orbit;
+            set_camera(state, orbited(state.projection(), input.mouse.x - pressed_at_.x,
+                                      input.mouse.y - pressed_at_.y));
+            return;
+        case Does::orbit: set_camera(state, orbited(state.projection(), dx, dy)); return;
+        case Does::pan: set_camera(state, panned(state.projection(), dx, dy)); return;
+        case Does::drag: drag(state, input); return;
+        case Does::nothing:
+        case Does::grab:
+        case Does::ignore: return;
+    }
+}
+
+void ViewportMouse::drag(ViewerState& state, const Input& input) {
+    bool changed = input.mouse != last_;
+    for (const KeyPress& press : input.pressed) {
+        if (press.repeated) continue;
+        if (press.key == Key::escape) {
+            state.document.cancel_drag();
+            let_go();
+            return;
+        }
+        if (const auto axis = axis_of(press.key)) {
+            axis_ = axis_ == axis ? std::nullopt : axis;
+            changed = true;
+        }
+    }
+    changed = changed || round_ != input.modifiers.control;
+    round_ = input.modifiers.control;
+    if (!changed) return;
+
+    const double share = input.modifiers.shift ? fine : 1;
+    dx_ += share * (input.mouse.x - last_.x);
+    dy_ += share * (input.mouse.y - last_.y);
+    const Projection view = state.projection();
+    const auto skeleton = moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale);
+    if (!skeleton) return;
+    Scene scene = state.document.scene();
+    Element& element = scene.elements[grabbed_->element];
+    element.skeleton = *skeleton;
+    if (find_fault(element)) return;  // a normal of length 0, a place beyond all doubles
+
+    grabbed_->place = place_of(view, *skeleton, state.scale);
+    // what was moved aside stays so far beside its place
+    const auto seen = view.project(grabbed_->place), seen_before = view.project(grabbed_from_);
+    if (seen && seen_before) {
+        grabbed_->seen = {seen->x + state.viewport.x, seen->y + state.viewport.y};
+        grabbed_->at = {grabbed_at_.x + seen->x - seen_before->x,
+                        grabbed_at_.y + seen->y - seen_before->y};
+    }
+    state.document.drag_to(std::move(scene));
+}
+
+Vec3d ViewportMouse::place_of(const Projection& view, const Skeleton& skeleton, double scale) const {
+    // An arrow keeps the factor that it was grabbed with, so that its tip stays under the pointer.
+    const auto* circle = std::get_if<CircleSkeleton>(&skeleton);
+    if (circle != nullptr && grabbed_->name == "normal") {
+        const auto& before = std::get<CircleSkeleton>(start_);
+        return circle->center + arrow_factor(view, before, scale) * circle->normal;
+    }
+    for (const Grip& grip : grips_of(view, skeleton, scale))
+        if (grip.name == grabbed_->name) return grip.place;
+    return grabbed_->place;
+}
+
+void ViewportMouse::release(ViewerState& state) {
+    switch (std::exchange(does_, Does::nothing)) {
+        case Does::press:
+            if (again_) {
+                center_orbit(state);
+            } else {
+                clicked_before_ = true;
+                click(state);
+            }
+            break;
+        case Does::drag:
+            state.document.end_drag();
+            // the first click selected, and so brought a handle under the pointer
+            if (again_ && dx_ == 0 && dy_ == 0) center_orbit(state);
+            break;
+        case Does::nothing:
+        case Does::grab:
+        case Does::orbit:
+        case Does::pan:
+        case Does::ignore: break;
+    }
+    grabbed_.reset();
+    axis_.reset();
+}
+
+void ViewportMouse::let_go() {
+    grabbed_.reset();
+    axis_.reset();
+    does_ = Does::ignore;
+}
+
+void ViewportMouse::click(ViewerState& state) {
+    const Scene& scene = state.document.scene();
+    const Projection view = state.projection();
+    const WindowPoint at = in_picture(state, pressed_at_);
+    auto picked = pick_surface(scene, view, at);
+    if (!picked && state.skeleton_shown)
+        picked = pick_skeleton(scene, view, at, skeleton_radius * state.scale);
+    state.document.select(picked ? std::optional(picked->element) : std::nullopt);
+}
+
+void ViewportMouse::center_orbit(ViewerState& state) const {
+    const Projection view = state.projection();
+    const auto picked = pick_surface(state.document.scene(), view, in_picture(state, pressed_at_));
+    if (picked) set_camera(state, centred(view, *picked->place));
+}
+
+}  // namespace ivory

@@ -1,0 +1,36 @@
+#include "app/viewer/headless.h"
+
+#include <memory>
+
+#include "app/panels/panels.h"
+#include "app/platform/context.h"
+#include "app/viewer/script.h"
+#include "app/viewer/script_player.h"
+#include "app/viewer/viewer.h"
+
+namespace ivory {
+
+void run_headless(const HeadlessSettings& settings) {
+    // what can be wrong without a frame is said before there is one
+    const std::optional<Script> script =
+        settings.script ? std::optional(read_script(*settings.script)) : std::nullopt;
+
+    const std::unique_ptr<MemoryContext> context = open_memory_context(settings.size);
+    EventQueue events(settings.size);
+    WakeUp wake_up;
+    ViewerSettings viewer_settings;
+    viewer_settings.threads = settings.threads;
+    viewer_settings.wake = [&] { wake_up.wake(); };
+    viewer_settings.hold_back_coarse = false;
+    Viewer viewer(*context, std::move(viewer_settings));
+    if (settings.scene) open_scene(viewer.state(), *settings.scene);
+
+    ScriptPlayer player(viewer, *context, events, wake_up, settings.stop);
+    if (script)
+        player.play(*script);
+    else
+        player.wait_final();
+    if (settings.screenshot) player.screenshot(*settings.screenshot, false);
+}
+
+}  // namespace ivory

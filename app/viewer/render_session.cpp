@@ -1,0 +1,540 @@
+#include "app/viewer/render_session.h"
+
+#include <algorithm>
+#include <array>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "app/viewer/touched_tiles.h"
+#include "core/field/field.h"
+#include "core/render/camera.h"
+#include "core/render/canvas.h"
+#include "core/render/render.h"
+#include "core/render/shade.h"
+#include "core/trace/methods/method.h"
+
+namespace ivory {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+// Between the frames that show refinement: more would only take time from the tracer.
+constexpr milliseconds refinement_interval{40};
+// A first picture is shown this long after the edit at the earliest, if more is coming.
+constexpr milliseconds hold_back{12};
+// How long an edit leaves the picture before it to become complete: normally, and when the one before
+// that was cut short too, so that someone who drags without a pause sees the surface follow.
+constexpr milliseconds grace{15}, grace_when_starved{100};
+// After the last edit, before tiles are traced again that nobody can tell from what they are.
+constexpr milliseconds rest{150};
+
+double milliseconds_between(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+// Whether nothing but colours, lights and background tells the two scenes apart.
+bool same_geometry(const Scene& a, const Scene& b) {
+    if (a.threshold != b.threshold || a.elements.size() != b.elements.size()) return false;
+    for (std::size_t i = 0; i < a.elements.size(); ++i) {
+        const Element &p = a.elements[i], &q = b.elements[i];
+        if (!(p.skeleton == q.skeleton && p.kernel == q.kernel && p.strength == q.strength &&
+              p.width == q.width && p.visible == q.visible))
+            return false;
+    }
+    return true;
+}
+
+// A picture in the making, or made: what the workers have delivered of it.
+struct Board {
+    std::uint64_t number = 0;  // of its request; 0: none yet
+    PictureRequest request;
+    std::vector<Rgba8> color;
+    std::vector<float> depth;
+    std::vector<std::uint8_t> shows;        // by tile: something of this picture is there
+    std::vector<std::uint16_t> done;        // by tile: its pixels that are this picture's
+    std::vector<std::size_t> changed;       // tiles since the last poll, each once
+    std::vector<std::uint8_t> is_changed;   // by tile
+    std::vector<std::array<std::uint16_t, 5>> tile_pixels;
+    std::array<std::uint64_t, 5> pixels{};  // by Status, of all tiles
+    std::size_t tiles_missing = 0;          // those that show nothing
+    std::uint64_t pixels_done = 0;
+    std::uint64_t tiles_traced = 0;
+    bool tracing = false;  // false: only shaded anew
+    bool certainly_empty = false;
+    bool final = false;
+    Clock::time_point ended;  // when the last tile came that anyone can tell from the one before
+    std::string fault;
+
+    [[nodiscard]] bool complete() const { return number != 0 && tiles_missing == 0; }
+
+    // Another picture. It has nothing yet of the tiles in `missing`; the others stand as they are.
+    void begin(std::uint64_t new_number, const PictureRequest& new_request,
+               const std::vector<std::uint8_t>& missing, bool surface_empty) {
+        const bool resized = new_request.size != request.size || number == 0;
+        number = new_number;
+        request = new_request;
+        if (resized) {
+            const auto size = static_cast<std::size_t>(request.size.width) *
+                              static_cast<std::size_t>(request.size.height);
+            color.resize(size);
+            depth.resize(size);
+            changed.clear();
+            is_changed.assign(missing.size(), 0);
+            done.assign(missing.size(), 0);
+            tile_pixels.assign(missing.size(), {});
+            pixels = {};
+        }
+        shows.assign(missing.size(), 1);
+        tiles_missing = 0;
+        for (std::size_t tile = 0; tile < missing.size(); ++tile) {
+            if (missing[tile] == 0) continue;
+            shows[tile] = 0;
+            ++tiles_missing;
+        }
+        tiles_traced = 0;
+        certainly_empty = surface_empty;
+        final = false;
+        fault.clear();
+    }
+
+    // A job begins that makes these tiles anew; those of `kept` show what is not this picture's.
+    void expect(const std::vector<std::uint8_t>& selected, const std::vector<std::uint8_t>& kept,
+                bool job_traces) {
+        tracing = job_traces;
+        pixels_done = 0;
+        for (std::size_t tile = 0; tile < selected.size(); ++tile) {
+            if (selected[tile] != 0 || kept[tile] != 0) done[tile] = 0;
+            pixels_done += done[tile];
+        }
+    }
+
+    // The tile's pixels from the frame, those that are not traced yet as blocks of the nearest one above
+    // and to the left that is. How many more of them are there now.
+    std::uint64_t take(const TileNotice& notice, const Frame& frame, const TileState& tile) {
+        const PixelRect& rect = notice.rect;
+        for (int j = rect.y0; j < rect.y1; ++j) {
+            for (int i = rect.x0; i < rect.x1; ++i) {
+                const std::size_t to = frame.at(i, j);
+                const std::size_t from = frame.at(i - i % notice.stride, j - j % notice.stride);
+                color[to] = frame.color[from];
+                depth[to] = possibly_hit(frame.status[from])
+                                ? static_cast<float>(midpoint(frame.t(from)))
+                                : std::numeric_limits<float>::infinity();
+            }
+        }
+        if (shows[notice.tile] == 0) {
+            shows[notice.tile] = 1;
+            --tiles_missing;
+        }
+        if (tracing && done[notice.tile] == 0) ++tiles_traced;
+        int sum = 0;
+        for (std::size_t status = 0; status < pixels.size(); ++status) {
+            pixels[status] += tile.pixels[status];
+            pixels[status] -= tile_pixels[notice.tile][status];
+            sum += tile.pixels[status];
+        }
+        tile_pixels[notice.tile] = tile.pixels;
+        const auto more = static_cast<std::uint64_t>(sum - done[notice.tile]);
+        done[notice.tile] = static_cast<std::uint16_t>(sum);
+        pixels_done += more;
+        if (is_changed[notice.tile] == 0) {
+            is_changed[notice.tile] = 1;
+            changed.push_back(notice.tile);
+        }
+        return more;
+    }
+};
+
+// Copies the tile; whether that changed a byte of its colours.
+bool copy_tile(const PixelRect& rect, const Board& board, ShownPicture& shown) {
+    bool differs = false;
+    const auto columns = static_cast<std::size_t>(rect.width());
+    for (int j = rect.y0; j < rect.y1; ++j) {
+        const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(shown.size.width) +
+                                static_cast<std::size_t>(rect.x0);
+        if (std::memcmp(&shown.color[row], &board.color[row], columns * sizeof(Rgba8)) != 0) {
+            differs = true;
+            std::copy_n(&board.color[row], columns, &shown.color[row]);
+        }
+        std::copy_n(&board.depth[row], columns, &shown.depth[row]);
+    }
+    return differs;
+}
+
+}  // namespace
+
+// The thread that turns requests into jobs, and the board between it, the workers and `poll`.
+class RenderSession::Director {
+  public:
+    explicit Director(Settings settings) : settings_(std::move(settings)) {
+        settings_.threads = std::max(settings_.threads, 1);
+        thread_ = std::jthread([this] { direct(); });
+    }
+
+    ~Director() {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+        if (job_ != nullptr) job_->cancel();
+        condition_.notify_all();
+    }
+
+    void show(PictureRequest request) {
+        const std::lock_guard lock(mutex_);
+        wanted_ = std::move(request);
+        ++wanted_number_;
+        if (job_ != nullptr) {
+            if (board_.complete()) {
+                job_->cancel();
+            } else if (!cancel_at_) {
+                cancel_at_ = Clock::now() + (starved_ ? grace_when_starved : grace);
+            }
+        }
+        condition_.notify_all();
+    }
+
+    PictureChange poll(bool hurry, ShownPicture& shown, PictureState& state, double& until_due) {
+        const std::lock_guard lock(mutex_);
+        const Clock::time_point now = Clock::now();
+        PictureChange change;
+        until_due = -1;
+        if (board_.complete()) {
+            if (board_.number == shown_number_) {
+                take_changed_tiles(shown, change);
+            } else {
+                const Clock::time_point due = board_.request.since + hold_back;
+                if (hurry || board_.final || shown_number_ == 0 || now >= due) {
+                    replace(shown, change);
+                    state.first_milliseconds = milliseconds_between(board_.request.since, now);
+                } else {
+                    until_due = milliseconds_between(now, due) / 1000;
+                }
+            }
+        }
+        report(shown, state, now);
+        return change;
+    }
+
+    bool first_picture_ready() const {
+        const std::lock_guard lock(mutex_);
+        return board_.number == wanted_number_ && (board_.complete() || !board_.fault.empty());
+    }
+
+    SessionTotals totals() const {
+        const std::lock_guard lock(mutex_);
+        return totals_;
+    }
+
+  private:
+    // --- poll, under the lock ---
+
+    void take_changed_tiles(ShownPicture& shown, PictureChange& change) {
+        const Squares& tiles = TileGrid(shown.size.width, shown.size.height).tiles;
+        for (const std::size_t tile : board_.changed) {
+            const PixelRect rect = tiles.rect(tile);
+            if (copy_tile(rect, board_, shown)) change.tiles.push_back(rect);
+            board_.is_changed[tile] = 0;
+        }
+        board_.changed.clear();
+    }
+
+    void replace(ShownPicture& shown, PictureChange& change) {
+        if (shown.size != board_.request.size) {
+            shown.size = board_.request.size;
+            shown.color = board_.color;
+            shown.depth = board_.depth;
+            change.all = true;
+            std::fill(board_.is_changed.begin(), board_.is_changed.end(), std::uint8_t{0});
+            board_.changed.clear();
+        } else {
+            take_changed_tiles(shown, change);
+        }
+        change.replaced = true;
+        shown_number_ = board_.number;
+        shown_scene_ = board_.request.scene;
+        shown_camera_ = board_.request.camera;
+    }
+
+    void report(const ShownPicture& shown, PictureState& state, Clock::time_point now) const {
+        const bool current = board_.number == wanted_number_;
+        state.scene = shown_scene_;
+        state.camera = shown_camera_;
+        state.size = shown.size;
+        state.depth = shown.depth;
+        state.threads = settings_.threads;
+        state.final = current && shown_number_ == wanted_number_ && board_.final;
+        const auto pixels = static_cast<double>(board_.color.size());
+        state.progress =
+            current && pixels > 0 ? static_cast<double>(board_.pixels_done) / pixels : 0;
+        const auto& wanted = current ? board_.request : *wanted_or_board();
+        state.milliseconds =
+            wanted_number_ == 0
+                ? 0
+                : milliseconds_between(wanted.since, current && board_.final ? board_.ended : now);
+        const auto count = [&](Status status) {
+            return board_.pixels[static_cast<std::size_t>(status)];
+        };
+        state.hit = count(Status::hit);
+        state.miss = count(Status::miss);
+        state.unresolved = count(Status::unresolved);
+        state.tiles = board_.shows.size();
+        state.tiles_traced = current ? board_.tiles_traced : 0;
+        state.surface_certainly_empty = current && board_.certainly_empty;
+        state.fault = current ? board_.fault : "";
+    }
+
+    const PictureRequest* wanted_or_board() const { return wanted_ ? &*wanted_ : &in_work_; }
+
+    // --- the director's thread ---
+
+    void direct() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            condition_.wait(lock, [this] { return stop_ || wanted_; });
+            if (stop_) return;
+            in_work_ = *std::exchange(wanted_, std::nullopt);
+            const PictureRequest request = in_work_;
+            const std::uint64_t number = wanted_number_;
+            cancel_at_.reset();
+            lock.unlock();
+            std::string fault;
+            try {
+                work(number, request);
+            } catch (const std::bad_alloc&) {
+                fault = "out of memory for a picture of this size";
+            } catch (const std::exception& error) {
+                fault = error.what();
+            }
+            lock.lock();
+            job_ = nullptr;
+            if (!fault.empty()) {
+                canvas_.reset();  // whatever state it is in
+                tiles_.clear();
+                board_.number = number;
+                board_.request = request;
+                board_.final = false;
+                board_.fault = fault;
+                lock.unlock();
+                settings_.wake();
+                lock.lock();
+            }
+        }
+    }
+
+    // One picture, from its scene to its last tile or until it is cancelled.
+    void work(std::uint64_t number, const PictureRequest& request) {
+        const Task task = prepare(request);
+        std::vector<std::uint8_t> selected(tiles_.size()), kept(tiles_.size());
+        for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+            selected[tile] = task == Task::shade || tiles_[tile] == Tile::outdated;
+            kept[tile] = tiles_[tile] == Tile::kept;
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            board_.begin(number, request, selected, picture_.field->box.empty());
+            board_.expect(selected, kept, task != Task::shade);
+            ++totals_.begun;
+        }
+        bool going_on = run(task, Order::coarse_to_fine, request, selected);
+        {
+            const std::lock_guard lock(mutex_);
+            starved_ = !board_.complete();
+            board_.ended = Clock::now();
+        }
+        if (task != Task::shade) settle(selected);
+        if (going_on && std::find(kept.begin(), kept.end(), 1) != kept.end()) {
+            settings_.wake();
+            going_on = hand_rests(request);
+            if (going_on) {
+                // in plain order: no tile is shown coarser than it is
+                going_on = run(Task::trace_and_shade, Order::plain, request, kept);
+                settle(kept);
+            }
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            board_.final = going_on;
+            if (!going_on) ++totals_.cancelled;
+        }
+        if (going_on) settings_.wake();
+    }
+
+    // False: cancelled.
+    bool run(Task task, Order order, const PictureRequest& request, std::vector<std::uint8_t> selected) {
+        if (std::find(selected.begin(), selected.end(), 1) == selected.end()) return true;
+        JobSettings job;
+        job.threads = settings_.threads;
+        job.task = task;
+        job.order = order;
+        job.keep_lists = true;
+        job.selected = std::move(selected);
+        if (request.focus) {
+            job.focus_i = static_cast<int>(request.focus->x);
+            job.focus_j = static_cast<int>(request.focus->y);
+        }
+        job.on_tile = [this](const TileNotice& notice) { deliver(notice); };
+        FrameJob frame_job(picture_, *canvas_, std::move(job));
+
+        std::unique_lock lock(mutex_);
+        job_ = &frame_job;
+        if (stop_) frame_job.cancel();
+        if (wanted_ && !cancel_at_) cancel_at_ = Clock::now() + grace;  // asked for since then
+        lock.unlock();
+        // `show` and `deliver` cancel what is complete; here the grace of the others ends.
+        while (!frame_job.wait_for(milliseconds(5))) {
+            lock.lock();
+            if (cancel_at_ && (board_.complete() || Clock::now() >= *cancel_at_)) frame_job.cancel();
+            lock.unlock();
+        }
+        lock.lock();
+        job_ = nullptr;
+        lock.unlock();
+        return frame_job.finish().complete;
+    }
+
+    // The selected tiles of which all pixels have come are the picture's own now.
+    void settle(const std::vector<std::uint8_t>& selected) {
+        const std::lock_guard lock(mutex_);
+        for (std::size_t tile = 0; tile < selected.size(); ++tile)
+            if (selected[tile] != 0 && board_.done[tile] == canvas_->grid.tiles.rect(tile).area())
+                tiles_[tile] = Tile::exact;
+    }
+
+    // False: something else is wanted before.
+    bool hand_rests(const PictureRequest& request) {
+        std::unique_lock lock(mutex_);
+        return !condition_.wait_until(lock, request.since + rest, [this] { return stop_ || wanted_; });
+    }
+
+    // Makes picture_, canvas_ and tiles_ ready for the request; what there is to do.
+    Task prepare(const PictureRequest& request) {
+        const PictureRequest before = std::exchange(traced_, request);
+        const bool same_size = canvas_ != nullptr && before.size == request.size;
+        const bool same_view = same_size && before.camera == request.camera;
+        const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
+        if (same_view && whole && same_geometry(*before.scene, *request.scene)) {
+            Field field = *picture_.field;
+            for (std::size_t i = 0; i < field.size(); ++i)
+                field.color[i] = request.scene->elements[field.source[i]].color;
+            picture_.field = std::make_shared<const Field>(std::move(field));
+            picture_.lighting = make_lighting(*request.scene, picture_.view);
+            return Task::shade;
+        }
+        picture_.field = std::make_shared<const Field>(compile(*request.scene));
+        if (!same_view) {
+            picture_.view = make_view(request.camera);
+            directions_.clear();
+        }
+        const bool same_light = before.scene && before.scene->lights == request.scene->lights &&
+                                before.scene->background == request.scene->background;
+        picture_.lighting = make_lighting(*request.scene, picture_.view);
+        picture_.method = methods().front();
+        picture_.options.tolerance = settings_.tolerance;
+        if (!same_size) {
+            canvas_.reset();  // the memory of one is enough
+            canvas_ = std::make_unique<Canvas>(request.size.width, request.size.height, false);
+            tiles_.resize(canvas_->grid.tiles.size());
+        }
+        canvas_->forget_lists();
+
+        std::optional<std::vector<std::uint8_t>> touched;
+        if (same_view && same_light) {
+            if (directions_.empty()) directions_ = tile_directions(picture_.view, request.size);
+            touched = touched_tiles(*before.scene, *request.scene, request.camera.position, directions_);
+        }
+        for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+            if (!touched || (*touched)[tile] != 0) tiles_[tile] = Tile::outdated;
+            else if (tiles_[tile] == Tile::exact) tiles_[tile] = Tile::kept;
+        }
+        return Task::trace_and_shade;
+    }
+
+    // --- the workers ---
+
+    void deliver(const TileNotice& notice) {
+        bool wake = false;
+        {
+            const std::lock_guard lock(mutex_);
+            const bool was_complete = board_.complete();
+            const std::uint64_t tiles_before = board_.tiles_traced;
+            const std::uint64_t more =
+                board_.take(notice, canvas_->frame, canvas_->tiles[notice.tile]);
+            totals_.tiles_traced += board_.tiles_traced - tiles_before;
+            if (board_.tracing) totals_.pixels_traced += more;
+            if (!board_.complete()) return;
+            const Clock::time_point now = Clock::now();
+            if (!was_complete && cancel_at_ && job_ != nullptr) job_->cancel();
+            wake = !was_complete || now - last_wake_ >= refinement_interval;
+            if (wake) last_wake_ = now;
+        }
+        if (wake) settings_.wake();
+    }
+
+    // What a tile of the canvas shows.
+    enum class Tile : std::uint8_t {
+        outdated,  // something else, or not all of it
+        kept,      // pixels of an earlier scene that nobody can tell from this one's
+        exact,     // this scene
+    };
+
+    Settings settings_;
+
+    mutable std::mutex mutex_;  // guards all down to the next comment
+    std::condition_variable condition_;
+    bool stop_ = false;
+    std::optional<PictureRequest> wanted_;  // not yet begun
+    PictureRequest in_work_;
+    std::uint64_t wanted_number_ = 0;
+    FrameJob* job_ = nullptr;
+    std::optional<Clock::time_point> cancel_at_;
+    bool starved_ = false;
+    Board board_;
+    SessionTotals totals_;
+    Clock::time_point last_wake_;
+    std::uint64_t shown_number_ = 0;
+    std::shared_ptr<const Scene> shown_scene_;
+    Camera shown_camera_;
+
+    // The director's thread alone; the canvas is the job's while there is one.
+    std::unique_ptr<Canvas> canvas_;
+    Picture picture_;
+    PictureRequest traced_;  // what picture_, canvas_ and tiles_ are of
+    std::vector<Tile> tiles_;
+    std::vector<TileDirection> directions_;  // of picture_.view; empty: not made yet
+
+    std::jthread thread_;  // last: joined before what it uses is gone
+};
+
+RenderSession::RenderSession(Settings settings)
+    : director_(std::make_unique<Director>(std::move(settings))) {}
+
+RenderSession::~RenderSession() = default;
+
+void RenderSession::show(PictureRequest request) {
+    director_->show(std::move(request));
+}
+
+PictureChange RenderSession::poll(bool hurry) {
+    return director_->poll(hurry, shown_, state_, seconds_until_due_);
+}
+
+bool RenderSession::first_picture_ready() const {
+    return director_->first_picture_ready();
+}
+
+SessionTotals RenderSession::totals() const {
+    return director_->totals();
+}
+
+}  // namespace ivory

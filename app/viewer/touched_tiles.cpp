@@ -1,0 +1,125 @@
+#include "app/viewer/touched_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <variant>
+
+#include "core/render/direction.h"
+#include "core/render/tiles.h"
+
+namespace ivory {
+
+namespace {
+
+constexpr double visible_share = 1e-6;      // of the threshold
+constexpr std::size_t most_changed = 16;    // elements: beyond, all tiles are traced anew
+constexpr int most_balls = 24;              // along one skeleton
+
+struct Ball {
+    Vec3d center;
+    double radius;
+};
+
+double length(const Vec3d& v) {
+    return std::sqrt(dot(v, v));
+}
+
+// Distance from the skeleton beyond which |F| <= share T.
+double reach(const Element& element, double threshold) {
+    if (element.kernel != KernelKind::blinn) return element.width;
+    const double ratio = std::abs(element.strength) / (visible_share * threshold);
+    return ratio <= 1 ? 0 : element.width * std::sqrt(std::log(ratio));
+}
+
+// Balls of that reach along a piece of the skeleton of that length, no farther apart than the reach: with
+// half the distance added to their radii they cover all points that are within reach of it.
+template <class Place>
+void cover(double skeleton_length, double radius, const Place& place, std::vector<Ball>& balls) {
+    const double wanted = radius > 0 ? std::ceil(skeleton_length / radius) : most_balls;
+    const int pieces = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_balls)));
+    for (int i = 0; i < pieces; ++i)
+        balls.push_back({place((i + 0.5) / pieces), radius + 0.5 * skeleton_length / pieces});
+}
+
+void cover(const Element& element, double threshold, std::vector<Ball>& balls) {
+    if (!element.visible) return;
+    const double radius = reach(element, threshold);
+    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
+        balls.push_back({point->position, radius});
+    } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+        const Vec3d along = segment->b - segment->a;
+        cover(length(along), radius, [&](double x) { return segment->a + x * along; }, balls);
+    } else {
+        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
+        const Vec3d n = unit(circle.normal);
+        const Vec3d aside = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+        const Vec3d x_axis = unit(cross(n, aside)), y_axis = cross(n, x_axis);
+        const auto place = [&](double turn) {
+            const double angle = 2 * std::numbers::pi * turn;
+            return circle.center + circle.radius * (std::cos(angle) * x_axis + std::sin(angle) * y_axis);
+        };
+        cover(2 * std::numbers::pi * circle.radius, radius, place, balls);
+    }
+}
+
+// What is left of each list without the elements that both begin and both end with.
+struct Difference {
+    std::span<const Element> before, after;
+};
+
+Difference difference(std::span<const Element> before, std::span<const Element> after) {
+    while (!before.empty() && !after.empty() && before.front() == after.front()) {
+        before = before.subspan(1);
+        after = after.subspan(1);
+    }
+    while (!before.empty() && !after.empty() && before.back() == after.back()) {
+        before = before.first(before.size() - 1);
+        after = after.first(after.size() - 1);
+    }
+    return {before, after};
+}
+
+}  // namespace
+
+std::vector<TileDirection> tile_directions(const View& view, WindowSize size) {
+    const TileGrid grid(size.width, size.height);
+    std::vector<TileDirection> directions(grid.tiles.size());
+    for (std::size_t tile = 0; tile < directions.size(); ++tile) {
+        const Cone cone = cone_around(view, size.width, size.height, grid.tiles.rect(tile));
+        directions[tile] = {unit(cone.axis),
+                            cone.sine < 1 ? std::asin(cone.sine) : std::numbers::pi};
+    }
+    return directions;
+}
+
+std::optional<std::vector<std::uint8_t>> touched_tiles(const Scene& before, const Scene& after,
+                                                       const Vec3d& eye,
+                                                       const std::vector<TileDirection>& tiles) {
+    if (before.threshold != after.threshold) return std::nullopt;
+    const Difference changed = difference(before.elements, after.elements);
+    if (changed.before.size() + changed.after.size() > most_changed) return std::nullopt;
+
+    std::vector<Ball> balls;
+    for (const Element& element : changed.before) cover(element, before.threshold, balls);
+    for (const Element& element : changed.after) cover(element, after.threshold, balls);
+
+    std::vector<std::uint8_t> touched(tiles.size(), 0);
+    for (const Ball& ball : balls) {
+        const Vec3d to_center = ball.center - eye;
+        const double distance = length(to_center);
+        if (!(distance > ball.radius)) return std::nullopt;  // the eye is in it
+        const double angle = std::asin(ball.radius / distance);
+        for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+            if (touched[tile] != 0) continue;
+            const double cosine = dot(tiles[tile].axis, to_center) / distance;
+            const double sum = angle + tiles[tile].angle + 1e-6;
+            touched[tile] = sum >= std::numbers::pi || cosine >= std::cos(sum);
+        }
+    }
+    return touched;
+}
+
+}  // namespace ivory

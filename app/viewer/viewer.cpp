@@ -1,0 +1,291 @@
+#include "app/viewer/viewer.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "app/panels/panels.h"
+#include "app/platform/imgui_input.h"
+#include "app/platform/imgui_renderer.h"
+#include "app/viewer/frame_texture.h"
+#include "app/viewer/handles.h"
+#include "app/viewer/overlay.h"
+#include "core/field/field.h"
+#include "core/render/camera.h"
+#include "core/render/image_file.h"
+#include "core/render/shade.h"
+#include "core/scene/error.h"
+#include "core/scene/write_file.h"
+
+namespace ivory {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Popups and windows that fit their contents are right after so many frames.
+constexpr int settling_frames = 3;
+constexpr std::size_t times_kept = 256;
+
+struct ImguiContext {
+    ImguiContext() { ImGui::CreateContext(); }
+    ~ImguiContext() { ImGui::DestroyContext(); }
+    ImguiContext(const ImguiContext&) = delete;
+    ImguiContext& operator=(const ImguiContext&) = delete;
+};
+
+void keep(std::vector<double>& times, double milliseconds) {
+    if (times.size() == times_kept) times.erase(times.begin());
+    times.push_back(milliseconds);
+}
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+bool something_happened(const Input& input) {
+    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) != input.mouse_down.end() ||
+           input.wheel != 0 || !input.pressed.empty() || !input.text.empty();
+}
+
+// What the session was last asked for.
+struct Asked {
+    std::shared_ptr<const Scene> scene;
+    Camera camera;
+    WindowSize size;
+    friend bool operator==(const Asked&, const Asked&) = default;
+};
+
+}  // namespace
+
+struct Viewer::Parts {
+    Context& context;
+    ViewerSettings settings;
+    ImguiContext imgui;
+    ImguiRenderer imgui_renderer;
+    FrameTexture texture;
+    RenderSession session;
+    ViewerState state;
+    ViewportMouse mouse;
+
+    Asked asked;
+    std::optional<Asked> framed;  // what an automatic view was made for; its camera is not looked at
+    std::optional<std::pair<Theme, double>> style;  // theme and scale that ImGui stands at
+    bool overlay_hidden = false, minimised = false;
+    int frames_to_settle = settling_frames;
+    std::optional<Clock::time_point> edited;  // when the picture that is awaited was asked for
+    ViewerTimes times;
+
+    Parts(Context& the_context, ViewerSettings the_settings)
+        : context(the_context),
+          settings(std::move(the_settings)),
+          imgui_renderer(context.gl()),
+          texture(context.gl()),
+          session({settings.threads, settings.tolerance, settings.wake}) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.LogFilename = nullptr;
+    }
+
+    // When the edit was made whose first picture has just come, if one has.
+    std::optional<Clock::time_point> take_picture(const Input& input) {
+        const PictureChange change =
+            session.poll(!settings.hold_back_coarse || something_happened(input));
+        texture.update(session.shown(), change);
+        if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
+        state.picture = session.state();
+        if (!state.picture.fault.empty() && state.message.text != state.picture.fault)
+            state.say_error(state.picture.fault);
+        const Asked shown{state.picture.scene, state.picture.camera, state.picture.size};
+        if (!change.replaced || shown != asked) return std::nullopt;
+        return std::exchange(edited, std::nullopt);
+    }
+
+    void set_style(const Input& input) {
+        if (input.theme) state.theme = *input.theme;
+        state.scale = input.scale;
+        if (!style || style->second != input.scale) {
+            state.fonts = load_fonts(input.scale);
+            imgui_renderer.upload_fonts();
+        }
+        if (style != std::pair(state.theme, input.scale)) apply_theme(state.theme, input.scale);
+        style = {state.theme, input.scale};
+    }
+
+    // A view that nobody has chosen follows the scene as it was opened, and the viewport's shape.
+    void frame_automatic_view() {
+        const Document& document = state.document;
+        if (!state.view.automatic || document.dragging() || !document.undo_name().empty()) return;
+        const Asked wanted{document.scene_value(), {}, state.viewport.size()};
+        if (framed == wanted) return;
+        framed = wanted;
+        const double aspect = static_cast<double>(wanted.size.width) / wanted.size.height;
+        state.view.camera = default_camera(compile(*wanted.scene).reach_box, aspect);
+    }
+
+    void ask_for_picture(const Input& input, Clock::time_point start) {
+        const Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
+        if (wanted == asked) return;
+        asked = wanted;
+        edited = start;
+        session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start});
+    }
+
+    // Where the eyes are: at the pointer, or else at the selected element.
+    std::optional<WindowPoint> focus(const Input& input) const {
+        const WindowRect& viewport = state.viewport;
+        if (input.mouse_inside && viewport.contains(input.mouse))
+            return WindowPoint{input.mouse.x - viewport.x, input.mouse.y - viewport.y};
+        const std::optional<std::size_t> selected = state.document.selected();
+        if (!selected) return std::nullopt;
+        for (const Handle& handle : handles_of(state, *selected))
+            return WindowPoint{handle.at.x - viewport.x, handle.at.y - viewport.y};
+        return std::nullopt;
+    }
+
+    void draw(const Input& input) {
+        const Gl& gl = context.gl();
+        gl.BindFramebuffer(gl::framebuffer, context.framebuffer());
+        const Rgba8 background = to_srgb(state.document.scene().background);
+        gl.ClearColor(static_cast<float>(background.r) / 255, static_cast<float>(background.g) / 255,
+                      static_cast<float>(background.b) / 255, 1);
+        gl.Disable(gl::scissor_test);
+        gl.Clear(gl::color_buffer_bit);
+        texture.draw(state.viewport, input.size, background);
+        imgui_renderer.draw(*ImGui::GetDrawData(), input.size);
+    }
+
+    void fulfil_wishes(const Viewer& viewer) {
+        if (!state.screenshot_wanted) return;
+        const std::filesystem::path path = *std::exchange(state.screenshot_wanted, std::nullopt);
+        try {
+            write_file(path, png_bytes(viewer.read_back()));
+            state.say("Screenshot: " + path.string());
+        } catch (const Error& error) {
+            state.say_error(error.what());
+        }
+        frames_to_settle = settling_frames;
+    }
+};
+
+Viewer::Viewer(Context& context, ViewerSettings settings)
+    : parts_(std::make_unique<Parts>(context, std::move(settings))) {}
+
+Viewer::~Viewer() = default;
+
+void Viewer::frame(const Input& input) {
+    Parts& parts = *parts_;
+    ViewerState& state = parts.state;
+    const Clock::time_point start = Clock::now();
+    parts.minimised = input.size.width < 1 || input.size.height < 1;
+    if (parts.minimised) return;
+
+    const std::optional<Clock::time_point> edit_shown = parts.take_picture(input);
+    parts.set_style(input);
+    state.window = input.size;
+    if (something_happened(input) || !input.dropped.empty() || input.close_requested)
+        parts.frames_to_settle = settling_frames;
+    for (const std::string& file : input.dropped) request_open(state, file);
+    if (input.close_requested) request_quit(state);
+
+    feed_imgui(input);
+    ImGui::NewFrame();
+    state.widgets.clear();
+    handle_keys(state, input);
+    draw_panels(state);
+    parts.frame_automatic_view();
+    parts.mouse.update(state, input);
+    if (!parts.overlay_hidden && state.skeleton_shown) {
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        const WindowRect& viewport = state.viewport;
+        list.PushClipRect(ImVec2(static_cast<float>(viewport.x), static_cast<float>(viewport.y)),
+                          ImVec2(static_cast<float>(viewport.x + viewport.width),
+                                 static_cast<float>(viewport.y + viewport.height)));
+        draw_overlay(state, parts.mouse, list);
+        list.PopClipRect();
+    }
+    parts.ask_for_picture(input, start);
+    ImGui::Render();
+    parts.draw(input);
+    parts.fulfil_wishes(*this);
+    parts.context.present();
+
+    keep(parts.times.frames, milliseconds_since(start));
+    if (edit_shown) keep(parts.times.edits, milliseconds_since(*edit_shown));
+    if (parts.frames_to_settle > 0) --parts.frames_to_settle;
+}
+
+void Viewer::hide_overlay(bool hidden) {
+    parts_->overlay_hidden = hidden;
+}
+
+double Viewer::next_frame_wanted() const {
+    if (parts_->minimised) return -1;
+    if (parts_->frames_to_settle > 0) return 0;
+    double soonest = -1;
+    for (const double seconds : {ivory::next_frame_wanted(parts_->state), parts_->session.seconds_until_due()})
+        if (seconds >= 0 && (soonest < 0 || seconds < soonest)) soonest = seconds;
+    return soonest;
+}
+
+bool Viewer::awaits_first_picture() const {
+    return parts_->asked.scene != nullptr && !parts_->session.first_picture_ready();
+}
+
+bool Viewer::final() const {
+    return parts_->state.picture.final;
+}
+
+ViewerState& Viewer::state() {
+    return parts_->state;
+}
+
+const ViewportMouse& Viewer::mouse() const {
+    return parts_->mouse;
+}
+
+SessionTotals Viewer::totals() const {
+    return parts_->session.totals();
+}
+
+const ViewerTimes& Viewer::times() const {
+    return parts_->times;
+}
+
+std::string Viewer::title() const {
+    const Document& document = parts_->state.document;
+    const std::string file = document.path() ? document.path()->filename().string() : "untitled";
+    return "Ivory - " + file + (document.dirty() ? " *" : "");
+}
+
+Cursor Viewer::cursor() const {
+    switch (ImGui::GetMouseCursor()) {
+        case ImGuiMouseCursor_TextInput: return Cursor::text;
+        case ImGuiMouseCursor_ResizeEW: return Cursor::resize_x;
+        case ImGuiMouseCursor_ResizeNS: return Cursor::resize_y;
+        case ImGuiMouseCursor_ResizeAll: return Cursor::move;
+        case ImGuiMouseCursor_Hand: return Cursor::hand;
+        default: return Cursor::arrow;
+    }
+}
+
+Frame Viewer::read_back() const {
+    const Gl& gl = parts_->context.gl();
+    const WindowSize size = parts_->state.window;
+    Frame frame(size.width, size.height, false);
+    gl.BindFramebuffer(gl::framebuffer, parts_->context.framebuffer());
+    gl.PixelStorei(gl::pack_alignment, 1);
+    gl.ReadPixels(0, 0, size.width, size.height, gl::rgba, gl::unsigned_byte, &frame.color[0]);
+    // OpenGL counts rows from below
+    for (int j = 0; j < size.height / 2; ++j)
+        std::swap_ranges(&frame.color[frame.at(0, j)], &frame.color[frame.at(0, j)] + size.width,
+                         &frame.color[frame.at(0, size.height - 1 - j)]);
+    for (std::size_t p = 0; p < frame.size(); ++p) frame.color[p].a = 255;
+    return frame;
+}
+
+}  // namespace ivory
