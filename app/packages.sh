@@ -10,12 +10,13 @@ build_packages=(
     libgtest-dev libmpfr-dev
 )
 installed_now=no
+log=
+trap 'rm -f -- "$log"' EXIT
 
 say() { printf 'ivory: %s\n' "$*" >&2; }
 
 # Runs a command in silence; shows what it said and ends where it fails.
 quietly() {
-    local log
     log=$(mktemp)
     if ! "$@" >"$log" 2>&1 </dev/null; then
         cat "$log" >&2

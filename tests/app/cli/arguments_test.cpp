@@ -1,4 +1,5 @@
-// What the command line accepts, and how it refuses the rest: one line that says what would be right.
+// What the command line accepts, and how it refuses the rest: one line that says what would be
+// right.
 #include "app/cli/arguments.h"
 
 #include <gtest/gtest.h>
@@ -30,10 +31,10 @@ TEST(Arguments, RenderHasTheDefaultsOfTheContract) {
 }
 
 TEST(Arguments, RenderTakesAllItsOptions) {
-    const auto render = std::get<RenderArguments>(
-        parse({"render", "--size", "640x48", "-", "--depth", "d.pfm", "--answers=-", "--stats",
-               "s.json", "--repeat", "5", "--tolerance", "1e-12", "--threads", "3", "--method",
-               "bisection", "--delta", "0.001", "--quiet"}));
+    const auto render = std::get<RenderArguments>(parse(
+        {"render",  "--size",   "640x48",    "-",       "--depth",     "d.pfm",  "--answers=-",
+         "--stats", "s.json",   "--repeat",  "5",       "--tolerance", "1e-12",  "--threads",
+         "3",       "--method", "bisection", "--delta", "0.001",       "--quiet"}));
     EXPECT_EQ(render.scene, "-");
     EXPECT_EQ(render.picture, "");
     EXPECT_EQ(render.depth, "d.pfm");

@@ -94,9 +94,9 @@ TEST(CommandLine, ABrokenSceneIsOne) {
 TEST(CommandLine, RenderWritesAllThatIsAskedFor) {
     const TemporaryFolder folder;
     const std::string out = folder.path().string() + "/";
-    const Finished run =
-        run_ivory({"render", figure_1, "-o", out + "a.png", "--size", "40x30", "--depth",
-                   out + "a.pfm", "--answers", out + "a.csv", "--stats", out + "a.json", "--threads", "2"});
+    const Finished run = run_ivory({"render", figure_1, "-o", out + "a.png", "--size", "40x30",
+                                    "--depth", out + "a.pfm", "--answers", out + "a.csv", "--stats",
+                                    out + "a.json", "--threads", "2"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(run.err, "");  // no terminal, no progress
@@ -127,7 +127,8 @@ TEST(CommandLine, RenderWritesAllThatIsAskedFor) {
 TEST(CommandLine, AnswersAreThoseOfTrace) {
     const TemporaryFolder folder;
     const std::string out = folder.path().string() + "/";
-    ASSERT_EQ(run_ivory({"render", figure_1, "--size", "32x18", "--answers", out + "a.csv"}).status, 0);
+    ASSERT_EQ(run_ivory({"render", figure_1, "--size", "32x18", "--answers", out + "a.csv"}).status,
+              0);
     std::string rays, expected = columns;
     for (const std::string& line : lines_of(bytes_of(out + "a.csv"))) {
         std::size_t at = 0;
@@ -136,7 +137,8 @@ TEST(CommandLine, AnswersAreThoseOfTrace) {
         expected += line.substr(at, line.find(',', line.find(',', at) + 1) - at) + "\n";
     }
     put_bytes(out + "rays", rays);
-    const Finished run = run_ivory({"trace", figure_1, "--rays", out + "rays", "--tolerance", "1e-6"});
+    const Finished run =
+        run_ivory({"trace", figure_1, "--rays", out + "rays", "--tolerance", "1e-6"});
     ASSERT_EQ(run.status, 0) << run.err;
     std::string statuses_and_t_lo = columns;
     const std::vector<std::string> lines = lines_of(run.out);
@@ -186,7 +188,8 @@ TEST(CommandLine, WhatCannotBeWrittenLeavesNothing) {
     const std::string out = folder.path().string() + "/";
     expect_failure(run_ivory({"render", figure_1, "-o", out + "none/a.png", "--size", "8x8"}), 1,
                    "none/a.png: cannot be written");
-    expect_failure(run_ivory({"render", figure_1, "-o", out, "--size", "8x8"}), 1, "cannot be written");
+    expect_failure(run_ivory({"render", figure_1, "-o", out, "--size", "8x8"}), 1,
+                   "cannot be written");
     // The second of two outputs fails: the first is not there either.
     expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats", out + "none/s",
                               "--size", "8x8"}),
@@ -223,8 +226,11 @@ TEST(CommandLine, TheSceneIsNotOverwritten) {
 }
 
 TEST(CommandLine, AStandardOutputThatTakesNothingIsOne) {
-    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-             {"--help"}, {"info", figure_1}, {"trace", figure_1}, {"render", figure_1, "-o", "-", "--size", "8x8"}}) {
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"--help"},
+                                               {"info", figure_1},
+                                               {"trace", figure_1},
+                                               {"render", figure_1, "-o", "-", "--size", "8x8"}}) {
         expect_failure(run_ivory(words, {"/dev/null", "closed"}), 1, "standard output");
         if (!fs::exists("/dev/full")) continue;
         expect_failure(run_ivory(words, {"/dev/null", "/dev/full"}), 1, "No space left");
@@ -238,7 +244,8 @@ TEST(CommandLine, AReaderThatLeavesIsNoCrash) {
     put_bytes(folder / "rays", rays);
     const std::string call = "{ '" IVORY_EXECUTABLE "' trace '" + figure_1 + "' --rays '" +
                              (folder / "rays").string() + "' 2>'" + (folder / "err").string() +
-                             "'; echo $? >'" + (folder / "status").string() + "'; } | head -1 >/dev/null";
+                             "'; echo $? >'" + (folder / "status").string() +
+                             "'; } | head -1 >/dev/null";
     ASSERT_EQ(std::system(call.c_str()), 0);
     EXPECT_EQ(bytes_of(folder / "status"), "1\n");
     EXPECT_EQ(lines_of(bytes_of(folder / "err")).size(), 1u);
@@ -247,8 +254,8 @@ TEST(CommandLine, AReaderThatLeavesIsNoCrash) {
 TEST(CommandLine, AnInterruptedRenderIs130AndLeavesNothing) {
     for (const int signal : {SIGINT, SIGTERM}) {
         const TemporaryFolder folder;
-        const Ivory ivory({"render", figure_1, "-o", (folder / "a.png").string(), "--size", "400x300",
-                           "--repeat", "1000000"});
+        const Ivory ivory({"render", figure_1, "-o", (folder / "a.png").string(), "--size",
+                           "400x300", "--repeat", "1000000"});
         wait_until([&] { return files_in(folder.path()) == 1; });  // the temporary one
         ivory.send(signal);
         const Finished run = ivory.wait();
@@ -278,7 +285,8 @@ TEST(CommandLine, TraceAnswersInOrderForAnyNumberOfThreads) {
     const TemporaryFolder folder;
     std::string rays = "# hits and misses by turns\n\n";
     for (int n = 0; n < 3000; ++n) {
-        rays += std::to_string(n % 7 * 0.4 - 1.2) + (n % 2 == 0 ? " 0 8 0 0 -1\n" : ",0,8,0,0,-1\r\n");
+        rays +=
+            std::to_string(n % 7 * 0.4 - 1.2) + (n % 2 == 0 ? " 0 8 0 0 -1\n" : ",0,8,0,0,-1\r\n");
     }
     put_bytes(folder / "rays", rays);
     std::string first;
@@ -359,7 +367,8 @@ TEST(CommandLine, InfoTellsWhatIsSkippedAndWhy) {
 TEST(CommandLine, InfoAndRenderAgreeOnTheCamera) {
     const TemporaryFolder folder;
     put_bytes(folder / "s.json",
-              R"({"ivory": 1, "threshold": 0.5, "elements": [{"shape": "point", "position": [1, 2, 3]}]})");
+              R"({"ivory": 1, "threshold": 0.5,
+                  "elements": [{"shape": "point", "position": [1, 2, 3]}]})");
     const std::string scene = (folder / "s.json").string();
     Json info = Json::parse(run_ivory({"info", "--json", scene}).out).at("camera");
     info.erase("framed");
@@ -377,7 +386,8 @@ TEST(CommandLine, InfoListsTheMethods) {
 TEST(CommandLine, TheLocaleChangesNothing) {
     // Where this locale is not installed the test says less, and nothing wrong.
     ::setenv("LC_ALL", "de_DE.UTF-8", 1);
-    const Finished run = run_ivory({"render", figure_1, "--stats", "-", "--size", "8x8", "--tolerance", "1e-3"});
+    const Finished run =
+        run_ivory({"render", figure_1, "--stats", "-", "--size", "8x8", "--tolerance", "1e-3"});
     ::unsetenv("LC_ALL");
     EXPECT_EQ(Json::parse(run.out).at("tolerance"), 1e-3);
 }

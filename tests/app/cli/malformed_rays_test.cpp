@@ -33,7 +33,8 @@ std::map<std::string, std::string> table() {
 std::vector<std::string> files() {
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder())) {
-        if (entry.path().filename() != "expected.txt") names.push_back(entry.path().filename().string());
+        if (entry.path().filename() != "expected.txt")
+            names.push_back(entry.path().filename().string());
     }
     std::sort(names.begin(), names.end());
     return names;

@@ -64,8 +64,8 @@ class Ivory {
             posix_spawn_file_actions_addopen(&actions, 1, target.c_str(), O_WRONLY | O_CREAT, 0600);
         }
         posix_spawn_file_actions_addopen(&actions, 2, err_.c_str(), O_WRONLY | O_CREAT, 0600);
-        const int error = ::posix_spawn(&process_, IVORY_EXECUTABLE, &actions, nullptr,
-                                        pointers.data(), environ);
+        const int error =
+            ::posix_spawn(&process_, IVORY_EXECUTABLE, &actions, nullptr, pointers.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
         EXPECT_EQ(error, 0) << IVORY_EXECUTABLE;
     }

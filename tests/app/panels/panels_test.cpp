@@ -1,0 +1,537 @@
+#include "app/panels/panels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/panels/fields.h"
+#include "core/scene/scene_fault.h"
+#include "core/scene/scene_json.h"
+#include "core/scene/text.h"
+#include "tests/app/panels/viewer_bench.h"
+#include "tests/temporary_folder.h"
+
+namespace ivory {
+namespace {
+
+using tests::ViewerBench;
+
+Scene figure() {
+    Scene scene;
+    Element point, segment, circle;
+    point.skeleton = PointSkeleton{{0.5, 1.25, -0.5}};
+    segment.skeleton = SegmentSkeleton{{-1.5, -0.25, 0.25}, {1, -1, 0}};
+    circle.skeleton = CircleSkeleton{{0, 0.25, 0}, {0.5, 0.5, 1}, 1.25};
+    scene.elements = {point, segment, circle};
+    scene.camera = Camera{{3, 2, 7}, {0, 0, 0}};
+    return scene;
+}
+
+Scene points(std::size_t count) {
+    Scene scene;
+    for (std::size_t i = 0; i < count; ++i) {
+        Element element;
+        element.skeleton = PointSkeleton{{0.01 * static_cast<double>(i), 0, 0}};
+        scene.elements.push_back(element);
+    }
+    return scene;
+}
+
+// By more than the pixel that rectangles of fractions of a pixel are rounded outward by.
+bool overlap(const WindowRect& a, const WindowRect& b) {
+    return a.x + 1 < b.x + b.width && b.x + 1 < a.x + a.width && a.y + 1 < b.y + b.height &&
+           b.y + 1 < a.y + a.height;
+}
+
+// A choice lies under its options, a list's row beside its eye.
+bool may_overlap(const std::string& a, const std::string& b) {
+    return a.starts_with("element.kernel") && b.starts_with("element.kernel");
+}
+
+TEST(Layout, NothingOverlapsAndNothingIsCutOff) {
+    struct Case {
+        WindowSize size;
+        double scale;
+    };
+    for (const auto& [size, scale] : {Case{{1280, 720}, 1}, Case{{2560, 1440}, 2}, Case{{1920, 1080}, 1.25},
+                                      Case{{1920, 1080}, 1}}) {
+        for (std::size_t selected = 0; selected < 4; ++selected) {
+            SCOPED_TRACE(std::to_string(size.width) + " at " + number_text(scale) + ", " +
+                         std::to_string(selected));
+            ViewerBench bench(figure(), size, scale);
+            if (selected < 3) bench.state.document.select(selected);
+            bench.turns(3);
+            const auto& all = bench.state.widgets.all();
+            const WindowRect window{0, 0, size.width, size.height};
+            EXPECT_GT(bench.state.viewport.width, size.width / 2);
+            for (auto a = all.begin(); a != all.end(); ++a) {
+                const auto part = a->second.visible_part();
+                if (!part) continue;
+                EXPECT_TRUE(window.contains({part->x + 0.5, part->y + 0.5}) &&
+                            window.contains({part->x + part->width - 0.5, part->y + part->height - 0.5}))
+                    << a->first;
+                EXPECT_GE(part->width, a->second.rect.width - 1) << a->first << " is cut off";
+                EXPECT_FALSE(overlap(*part, bench.state.viewport)) << a->first;
+                for (auto b = std::next(a); b != all.end(); ++b) {
+                    const auto other = b->second.visible_part();
+                    if (!other || may_overlap(a->first, b->first)) continue;
+                    EXPECT_FALSE(overlap(*part, *other)) << a->first << " and " << b->first;
+                }
+            }
+        }
+    }
+}
+
+TEST(Layout, ScaledByTwoItIsTheSameTwiceAsLarge) {
+    WindowRect viewport, threshold;
+    {
+        ViewerBench small(figure());
+        viewport = small.state.viewport;
+        threshold = small.state.widgets.find("threshold")->rect;
+    }
+    ViewerBench large(figure(), {2560, 1440}, 2);
+    EXPECT_EQ(large.state.viewport, (WindowRect{2 * viewport.x, 2 * viewport.y, 2 * viewport.width,
+                                                2 * viewport.height}));
+    EXPECT_NEAR(large.state.widgets.find("threshold")->rect.y, 2 * threshold.y, 8);
+    EXPECT_NEAR(large.state.widgets.find("threshold")->rect.width, 2 * threshold.width, 4);
+}
+
+TEST(Layout, TheSmallestWindowsStillHaveAViewport) {
+    for (const WindowSize size : {WindowSize{1, 1}, WindowSize{40, 30}, WindowSize{320, 200}, WindowSize{3000, 50}}) {
+        ViewerBench bench(figure(), size);
+        bench.state.document.select(2);
+        bench.turns(3);
+        EXPECT_GE(bench.state.viewport.width, 1);
+        EXPECT_GE(bench.state.viewport.height, 1);
+    }
+}
+
+TEST(Layout, TabGivesThePictureTheWholeWindow) {
+    ViewerBench bench(figure());
+    const WindowRect before = bench.state.viewport;
+    bench.key(Key::tab);
+    EXPECT_EQ(bench.state.viewport, (WindowRect{0, 0, 1280, 720}));
+    EXPECT_TRUE(bench.state.widgets.all().empty());
+    bench.key(Key::tab);
+    EXPECT_EQ(bench.state.viewport, before);
+}
+
+TEST(Number, WhatIsTypedIsExactlyThatDouble) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    for (const double value : {0.1, 1.0 / 3, 0.30000000000000004, -1e-17, 123456789.12345678, 5e-324, 1e300}) {
+        bench.enter("element.position.y", number_text(value));
+        EXPECT_EQ(std::get<PointSkeleton>(bench.element(0).skeleton).position.y, value);
+    }
+    bench.enter("threshold", "0.65");
+    EXPECT_EQ(bench.scene().threshold, 0.65);
+}
+
+TEST(Number, OpenedAndLeftItKeepsEveryDigit) {
+    Scene scene = figure();
+    scene.threshold = 0.1234567890123456;
+    ViewerBench bench(scene);
+    const auto before = bench.state.document.scene_value();
+    bench.hold(Key::control);
+    bench.click("threshold");
+    bench.let(Key::control);
+    bench.key(Key::enter);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    EXPECT_EQ(bench.state.document.undo_name(), "Open");
+}
+
+TEST(Number, AClickOpensItAndEscapeLeavesItAsItWas) {
+    ViewerBench bench(figure());
+    const auto before = bench.state.document.scene_value();
+    bench.click("threshold");
+    bench.type("7");
+    bench.key(Key::escape);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    bench.click("threshold");
+    bench.type("7");
+    bench.key(Key::enter);
+    EXPECT_EQ(bench.scene().threshold, 7);
+}
+
+TEST(Number, TabGoesToTheNext) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    bench.click("element.position.x");
+    bench.type("1.5");
+    bench.key(Key::tab);
+    bench.type("2.5");
+    bench.key(Key::tab);
+    bench.type("3.5");
+    bench.key(Key::enter);
+    EXPECT_EQ(std::get<PointSkeleton>(bench.element(0).skeleton).position, (Vec3d{1.5, 2.5, 3.5}));
+    EXPECT_FALSE(bench.state.panels_hidden);
+}
+
+TEST(Number, AClickElsewhereTakesWhatWasTyped) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    bench.click("element.position.x");
+    bench.type("1.5");
+    // onto a handle of the same element, which then is dragged from the new place
+    const Handle handle = bench.handle("position");
+    bench.move_to(handle.at);
+    bench.press();
+    bench.move_to({handle.at.x + 4, handle.at.y});
+    bench.release();
+    bench.turns(2);
+    EXPECT_NEAR(std::get<PointSkeleton>(bench.element(0).skeleton).position.x, 1.5, 0.1);
+    EXPECT_EQ(bench.state.document.undo_name(), "Move point 1");
+}
+
+TEST(Number, WhatNoSceneMayHoldIsRefusedWithAMessage) {
+    ViewerBench bench(figure());
+    bench.state.document.select(2);
+    bench.turn();
+    const auto before = bench.state.document.scene_value();
+    for (const auto& [id, text] : std::vector<std::pair<std::string, std::string>>{
+             {"threshold", "0"}, {"threshold", "-1"}, {"threshold", "nonsense"}, {"threshold", "1e999"},
+             {"element.strength", "0"}, {"element.width", "0"}, {"element.radius", "-1"},
+             {"light.0.intensity", "-0.5"}}) {
+        SCOPED_TRACE(id + " " + text);
+        bench.state.message = {};
+        bench.enter(id, text);
+        EXPECT_EQ(bench.state.document.scene_value(), before);
+        EXPECT_TRUE(bench.state.message.error);
+        EXPECT_FALSE(bench.state.message.text.empty());
+    }
+    // the next good number puts it right
+    bench.enter("element.radius", "2");
+    EXPECT_FALSE(bench.state.message.error);
+}
+
+TEST(Number, ItCanBeChangedByAnAmount) {
+    ViewerBench bench(figure());
+    bench.state.document.select(1);
+    bench.turn();
+    bench.enter("element.a.x", "+=1");
+    EXPECT_EQ(std::get<SegmentSkeleton>(bench.element(1).skeleton).a.x, -0.5);
+    bench.enter("element.a.x", "*= 3");
+    EXPECT_EQ(std::get<SegmentSkeleton>(bench.element(1).skeleton).a.x, -1.5);
+}
+
+TEST(Number, ParsesWhatPeopleType) {
+    EXPECT_EQ(parse_number(" 0.65 ", 0), 0.65);
+    EXPECT_EQ(parse_number("0,65", 0), 0.65);
+    EXPECT_EQ(parse_number("+2", 0), 2);
+    EXPECT_EQ(parse_number("1e-3", 0), 1e-3);
+    EXPECT_EQ(parse_number("-=0.5", 2), 1.5);
+    EXPECT_EQ(parse_number("/=4", 2), 0.5);
+    for (const char* text : {"", " ", "abc", "1.2.3", "1,2,3", "nan", "inf", "/=0", "1e999", "0.5x", "+="})
+        EXPECT_EQ(parse_number(text, 1), std::nullopt) << text;
+}
+
+TEST(Number, ADragIsOneEntryAndEscapeCancelsIt) {
+    ViewerBench bench(figure());
+    bench.state.document.select(2);
+    bench.turn();
+    const auto before = bench.state.document.scene_value();
+    bench.drag(bench.at("element.radius"), 50, 0);
+    const double radius = std::get<CircleSkeleton>(bench.element(2).skeleton).radius;
+    EXPECT_GT(radius, 1.25);
+    EXPECT_EQ(bench.state.document.undo_name(), "Change radius of circle 1");
+    bench.state.document.undo();
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+
+    const WindowPoint at = bench.at("element.radius");
+    bench.move_to(at);
+    bench.press();
+    bench.move_to({at.x + 30, at.y});
+    EXPECT_NE(bench.state.document.scene_value(), before);
+    bench.key(Key::escape);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    bench.move_to({at.x + 60, at.y});
+    bench.release();
+    bench.turns(2);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+}
+
+TEST(Threshold, TheSliderReachesFromAThousandthToBeyondTheField) {
+    ViewerBench bench(figure());
+    const WindowRect rect = bench.state.widgets.find("threshold.slider")->rect;
+    const double y = rect.y + 0.4 * rect.height;
+    const auto set_to = [&](double share) {
+        bench.click(WindowPoint{rect.x + share * rect.width, y});
+        return bench.scene().threshold;
+    };
+    EXPECT_EQ(set_to(0), 0.001);
+    double before = 0;
+    for (const double share : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
+        const double now = set_to(share);
+        EXPECT_GT(now, before);
+        before = now;
+    }
+    EXPECT_GE(set_to(1), 1);  // the field's greatest value is more than 1
+    EXPECT_EQ(bench.state.document.undo_name(), "Change threshold");
+}
+
+TEST(Elements, EachShapeIsAddedSelectedAndValid) {
+    ViewerBench bench;
+    for (const char* shape : {"point", "segment", "circle"}) {
+        bench.click(std::string("add.") + shape);
+        ASSERT_EQ(bench.state.document.selected(), bench.scene().elements.size() - 1);
+        EXPECT_EQ(std::string(shape_word(bench.scene().elements.back().skeleton)), shape);
+        EXPECT_FALSE(find_fault(bench.scene()));
+    }
+    for (int i = 0; i < 3; ++i) bench.key(Key::z, {.control = true});
+    EXPECT_TRUE(bench.scene().elements.empty());
+}
+
+TEST(Elements, RowsSelectHideAndReorder) {
+    ViewerBench bench(figure());
+    bench.click("row.segment 1");
+    EXPECT_EQ(bench.state.document.selected(), 1u);
+    bench.click("row.segment 1.visible");
+    EXPECT_FALSE(bench.element(1).visible);
+    EXPECT_FALSE(bench.state.widgets.find("row.segment 1.visible")->on);
+    bench.click("element.up");
+    EXPECT_EQ(bench.state.document.selected(), 0u);
+    EXPECT_TRUE(std::holds_alternative<SegmentSkeleton>(bench.element(0).skeleton));
+    // dragged below the last one
+    bench.drag(bench.at("row.segment 1"), 0, bench.at("row.circle 1").y - bench.at("row.segment 1").y + 4, 8);
+    EXPECT_TRUE(std::holds_alternative<SegmentSkeleton>(bench.element(2).skeleton));
+    EXPECT_EQ(bench.state.document.selected(), 2u);
+}
+
+TEST(Elements, RenamedByTypingButNeverToAnothersName) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    const auto rename = [&](std::string_view name) {
+        bench.click("element.name");
+        bench.key(Key::a, {.control = true});
+        bench.type(name);
+        bench.key(Key::enter);
+        bench.turns(2);
+    };
+    rename("heart");
+    EXPECT_EQ(bench.element(0).name, "heart");
+    EXPECT_NE(bench.state.widgets.find("row.heart"), nullptr);
+    rename("circle 1");
+    EXPECT_EQ(bench.element(0).name, "heart");
+    EXPECT_TRUE(bench.state.message.error);
+    rename("point 1");
+    EXPECT_EQ(bench.element(0).name, std::nullopt);
+}
+
+TEST(Elements, AThousandRowsAreRecordedThoughFewAreDrawn) {
+    ViewerBench bench(points(1000));
+    EXPECT_NE(bench.state.widgets.find("row.point 1000"), nullptr);
+    EXPECT_FALSE(bench.state.widgets.find("row.point 1000")->visible_part());
+    bench.state.document.select(999);
+    bench.turns(3);
+    EXPECT_TRUE(bench.state.widgets.find("row.point 1000")->visible_part());
+}
+
+TEST(Inspector, KernelColorAndVisibility) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    bench.click("element.kernel.wyvill");
+    EXPECT_EQ(bench.element(0).kernel, KernelKind::wyvill);
+    bench.click("element.visible");
+    EXPECT_FALSE(bench.element(0).visible);
+    bench.click("element.color");
+    bench.enter("element.color.g", "0.123456789");
+    EXPECT_EQ(bench.element(0).color, (Color{0.8, 0.123456789, 0.8}));
+    bench.enter("element.color.r", "1.5");
+    EXPECT_EQ(bench.element(0).color.x, 0.8);
+    bench.key(Key::escape);
+    EXPECT_EQ(bench.state.widgets.find("element.color.r"), nullptr);
+    EXPECT_EQ(bench.state.document.selected(), 0u);  // Escape was the popup's
+}
+
+TEST(Lights, TheDefaultOnesAreWrittenOutWhenOneChanges) {
+    ViewerBench bench(figure());
+    EXPECT_FALSE(bench.scene().lights);
+    bench.enter("light.1.intensity", "0.25");
+    ASSERT_TRUE(bench.scene().lights);
+    EXPECT_EQ((*bench.scene().lights)[1].intensity, 0.25);
+    EXPECT_EQ((*bench.scene().lights)[0], default_lights()[0]);
+    bench.click("light.0.delete");
+    EXPECT_EQ(bench.scene().lights->size(), 1u);
+    bench.click("lights.add");
+    EXPECT_EQ(bench.scene().lights->size(), 2u);
+    bench.click("light.1.attached");
+    EXPECT_TRUE((*bench.scene().lights)[1].attached_to_camera);
+}
+
+TEST(Keys, DoWhatTheTableSays) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.key(Key::h);
+    EXPECT_FALSE(bench.element(0).visible);
+    bench.key(Key::d, {.control = true});
+    EXPECT_EQ(bench.scene().elements.size(), 4u);
+    EXPECT_EQ(bench.state.document.selected(), 1u);
+    bench.key(Key::del);
+    EXPECT_EQ(bench.scene().elements.size(), 3u);
+    bench.key(Key::z, {.control = true});
+    EXPECT_EQ(bench.scene().elements.size(), 4u);
+    bench.key(Key::y, {.control = true});
+    EXPECT_EQ(bench.scene().elements.size(), 3u);
+    bench.key(Key::z, {.control = true});
+    bench.key(Key::z, {.shift = true, .control = true});
+    EXPECT_EQ(bench.scene().elements.size(), 3u);
+
+    bench.key(Key::digit3);
+    EXPECT_EQ(bench.state.projection().back(), (Vec3d{1, 0, 0}));
+    bench.key(Key::digit3, {.control = true});
+    EXPECT_EQ(bench.state.projection().back(), (Vec3d{-1, 0, 0}));
+    bench.key(Key::f);
+    EXPECT_EQ(bench.state.view.camera.target, (Vec3d{-0.25, -0.625, 0.125}));  // the segment's middle
+    bench.key(Key::f12);
+    EXPECT_TRUE(bench.state.screenshot_wanted);
+    bench.type("?");
+    EXPECT_TRUE(bench.state.help_shown);
+    bench.key(Key::escape);
+    EXPECT_FALSE(bench.state.help_shown);
+    EXPECT_TRUE(bench.state.document.selected());
+    bench.key(Key::escape);
+    EXPECT_FALSE(bench.state.document.selected());
+}
+
+TEST(Keys, BelongToATextFieldWhileItIsTypedInto) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    bench.click("element.name");
+    bench.key(Key::h);
+    bench.key(Key::del);
+    bench.key(Key::f);
+    EXPECT_TRUE(bench.element(0).visible);
+    EXPECT_EQ(bench.scene().elements.size(), 3u);
+}
+
+TEST(Menus, EveryEntryCanBeReachedUnderItsMenu) {
+    ViewerBench bench(figure());
+    for (const char* menu : {"file", "edit", "view", "help"}) {
+        bench.click(menu);
+        bool any = false;
+        for (const auto& [id, widget] : bench.state.widgets.all())
+            any = any || (id.starts_with(std::string(menu) + ".") && widget.visible_part());
+        EXPECT_TRUE(any) << menu;
+        bench.click(WindowPoint{640, 600});
+    }
+}
+
+TEST(Files, OpenEditSaveAndOpenAgain) {
+    tests::TemporaryFolder folder;
+    save_scene(figure(), folder / "figure.ivory.json");
+    ViewerBench bench;
+    request_open(bench.state, folder / "figure.ivory.json");
+    bench.turns(3);
+    EXPECT_EQ(bench.scene(), figure());
+    EXPECT_EQ(bench.state.view.camera, *figure().camera);
+    EXPECT_FALSE(bench.state.view.automatic);
+
+    bench.enter("threshold", "0.75");
+    bench.key(Key::s, {.control = true});
+    EXPECT_FALSE(bench.state.document.dirty());
+    EXPECT_EQ(read_scene(folder / "figure.ivory.json").threshold, 0.75);
+}
+
+TEST(Files, ABrokenOneChangesNothingButTheMessage) {
+    tests::TemporaryFolder folder;
+    std::ofstream(folder / "broken.ivory.json") << "{\"ivory\": 1, \"threshold\": }";
+    ViewerBench bench(figure());
+    const auto before = bench.state.document.scene_value();
+    const WindowRect viewport = bench.state.viewport;
+    request_open(bench.state, folder / "broken.ivory.json");
+    bench.turns(3);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    EXPECT_TRUE(bench.state.message.error);
+    EXPECT_NE(bench.state.message.text.find("broken.ivory.json"), std::string::npos);
+    EXPECT_EQ(bench.state.viewport, viewport);  // the picture stays where it is
+    bench.click("error.close");
+    EXPECT_TRUE(bench.state.message.text.empty());
+}
+
+TEST(Files, UnsavedChangesAreAskedAbout) {
+    tests::TemporaryFolder folder;
+    const auto path = folder / "figure.ivory.json";
+    save_scene(figure(), path);
+    ViewerBench bench;
+    open_scene(bench.state, path);
+    bench.turns(2);
+    request_quit(bench.state);
+    EXPECT_TRUE(bench.state.quit);  // nothing to ask
+    bench.state.quit = false;
+
+    bench.enter("threshold", "0.75");
+    request_quit(bench.state);
+    bench.turns(3);
+    EXPECT_FALSE(bench.state.quit);
+    bench.click("unsaved.cancel");
+    EXPECT_FALSE(bench.state.quit);
+    EXPECT_EQ(bench.state.widgets.find("unsaved.save"), nullptr);
+
+    bench.key(Key::q, {.control = true});
+    bench.turns(3);
+    bench.click("unsaved.save");
+    EXPECT_TRUE(bench.state.quit);
+    EXPECT_EQ(read_scene(path).threshold, 0.75);
+    bench.state.quit = false;
+
+    bench.enter("threshold", "0.85");
+    bench.key(Key::n, {.control = true});
+    bench.turns(3);
+    bench.click("unsaved.discard");
+    EXPECT_TRUE(bench.scene().elements.empty());
+    EXPECT_EQ(read_scene(path).threshold, 0.75);
+    EXPECT_FALSE(bench.state.document.path());
+}
+
+TEST(Files, TheBrowserSavesUnderANewNameAndOpensAnother) {
+    tests::TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "deeper");
+    save_scene(figure(), folder / "deeper" / "figure.ivory.json");
+    save_scene(points(2), folder / "points.ivory.json");
+    ViewerBench bench;
+    open_scene(bench.state, folder / "points.ivory.json");
+    bench.turns(2);
+
+    bench.key(Key::s, {.shift = true, .control = true});
+    bench.turns(3);
+    bench.type("copy");
+    bench.key(Key::enter);
+    bench.turns(3);
+    EXPECT_EQ(bench.state.document.path(), folder / "copy.ivory.json");
+    EXPECT_EQ(read_scene(folder / "copy.ivory.json").elements, points(2).elements);
+    EXPECT_EQ(bench.state.widgets.find("browser.ok"), nullptr);
+
+    bench.key(Key::o, {.control = true});
+    bench.turns(3);
+    EXPECT_NE(bench.state.widgets.find("browser.entry.copy.ivory.json"), nullptr);
+    bench.click("browser.entry.deeper");
+    bench.click("browser.ok");
+    bench.click("browser.entry.figure.ivory.json");
+    bench.click("browser.ok");
+    EXPECT_EQ(bench.scene(), figure());
+    EXPECT_EQ(bench.state.widgets.find("browser.ok"), nullptr);
+
+    // as a script does it: the name, then the button
+    bench.key(Key::s, {.shift = true, .control = true});
+    bench.turns(3);
+    bench.click("browser.name");
+    bench.key(Key::a, {.control = true});
+    bench.type("third.ivory.json");
+    bench.key(Key::enter);
+    bench.turns(2);
+    bench.click("browser.ok");
+    EXPECT_EQ(bench.state.document.path(), folder / "deeper" / "third.ivory.json");
+}
+
+}  // namespace
+}  // namespace ivory

@@ -1,0 +1,344 @@
+// Tracing while a person works. What is asserted are pictures and counts, never times.
+#include "app/viewer/render_session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "app/viewer/script_player.h"
+#include "core/render/canvas.h"
+#include "core/render/render.h"
+
+namespace ivory {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using SceneValue = std::shared_ptr<const Scene>;
+
+constexpr WindowSize size{200, 136};
+constexpr double tolerance = 1e-6;
+
+Camera camera() {
+    Camera c;
+    c.position = {0.5, 0.4, 7};
+    c.target = {0, 0, 0};
+    return c;
+}
+
+Element point(Vec3d position, KernelKind kernel, double width, Color color) {
+    Element element;
+    element.skeleton = PointSkeleton{position};
+    element.kernel = kernel;
+    element.width = width;
+    element.color = color;
+    return element;
+}
+
+Scene two_blobs() {
+    Scene scene;
+    scene.threshold = 0.4;
+    scene.elements = {point({-1.2, 0.2, 0}, KernelKind::wyvill, 1.5, {0.9, 0.3, 0.1}),
+                      point({1.4, -0.3, 0}, KernelKind::blinn, 0.7, {0.1, 0.4, 0.9})};
+    return scene;
+}
+
+SceneValue with_left_blob_at(double x) {
+    Scene scene = two_blobs();
+    std::get<PointSkeleton>(scene.elements[0].skeleton).position.x = x;
+    return std::make_shared<const Scene>(std::move(scene));
+}
+
+// What `ivory render` draws.
+std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize picture_size = size) {
+    Picture picture;
+    picture.field = std::make_shared<const Field>(compile(scene));
+    picture.view = make_view(c);
+    picture.lighting = make_lighting(scene, picture.view);
+    picture.method = methods().front();
+    picture.options.tolerance = tolerance;
+    Canvas canvas(picture_size.width, picture_size.height, false);
+    JobSettings settings;
+    settings.threads = 2;
+    render(picture, canvas, settings);
+    return {&canvas.frame.color[0], &canvas.frame.color[0] + canvas.frame.size()};
+}
+
+class Session : public testing::Test {
+  protected:
+    WakeUp wake_up;
+    RenderSession session{{2, tolerance, [this] { wake_up.wake(); }}};
+
+    void show(const SceneValue& scene, const Camera& c = camera(), WindowSize picture_size = size) {
+        session.show({scene, c, picture_size, std::nullopt, Clock::now()});
+    }
+    // False after a minute.
+    bool wait_until(const std::function<bool()>& done) {
+        const Clock::time_point start = Clock::now();
+        while (!done()) {
+            if (Clock::now() - start > std::chrono::minutes(1)) return false;
+            wake_up.wait(0.02);
+        }
+        return true;
+    }
+    bool wait_final() {
+        return wait_until([this] {
+            session.poll(false);
+            return session.state().final;
+        });
+    }
+    bool wait_first() {
+        return wait_until([this] { return session.first_picture_ready(); });
+    }
+};
+
+TEST_F(Session, WithoutARequestThereIsNoPicture) {
+    EXPECT_FALSE(session.poll(true).any());
+    EXPECT_EQ(session.state().scene, nullptr);
+    EXPECT_FALSE(session.state().final);
+}
+
+TEST_F(Session, TheFinalPictureIsThatOfRender) {
+    const auto scene = std::make_shared<const Scene>(two_blobs());
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+    const PictureState& state = session.state();
+    EXPECT_EQ(state.scene, scene);
+    EXPECT_EQ(state.size, size);
+    EXPECT_EQ(state.progress, 1);
+    EXPECT_EQ(state.hit + state.miss + state.unresolved,
+              static_cast<std::uint64_t>(size.width * size.height));
+    EXPECT_GT(state.hit, 0u);
+    EXPECT_EQ(state.tiles, state.tiles_traced);
+    EXPECT_FALSE(state.surface_certainly_empty);
+}
+
+TEST_F(Session, DepthIsTheDistanceAndInfiniteOnAMiss) {
+    show(std::make_shared<const Scene>(two_blobs()));
+    ASSERT_TRUE(wait_final());
+    std::uint64_t hits = 0;
+    for (const float depth : session.state().depth)
+        if (std::isfinite(depth)) {
+            ++hits;
+            EXPECT_GT(depth, 4);
+            EXPECT_LT(depth, 9);
+        }
+    EXPECT_EQ(hits, session.state().hit + session.state().unresolved);
+    EXPECT_FALSE(std::isfinite(session.state().depth_at({-1, 5})));
+}
+
+TEST_F(Session, AnEditChangesOnlyWhatItSaysItChanged) {
+    show(with_left_blob_at(-1.2));
+    ASSERT_TRUE(wait_final());
+    std::vector<Rgba8> mirror = session.shown().color;
+    show(with_left_blob_at(-1.0));
+    ASSERT_TRUE(wait_until([&] {
+        const PictureChange change = session.poll(false);
+        EXPECT_FALSE(change.all);
+        for (const PixelRect& rect : change.tiles)
+            for (int j = rect.y0; j < rect.y1; ++j)
+                for (int i = rect.x0; i < rect.x1; ++i) {
+                    const auto p = static_cast<std::size_t>(j * size.width + i);
+                    mirror[p] = session.shown().color[p];
+                }
+        EXPECT_EQ(mirror, session.shown().color);
+        return session.state().final;
+    }));
+    EXPECT_EQ(mirror, rendered(*with_left_blob_at(-1.0), camera()));
+}
+
+// Whenever one looks, each pixel is the one of the scene that is said to be shown, or that of the nearest
+// pixel of a coarser grid: never another scene's, never black.
+TEST_F(Session, NoPictureIsAMixtureOfScenes) {
+    constexpr unsigned seed = 7;
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> pause(0, 12);
+    std::map<SceneValue, std::vector<Rgba8>> finals;
+    std::vector<SceneValue> scenes;
+    for (int i = 0; i < 8; ++i) {
+        scenes.push_back(with_left_blob_at(-1.2 + 0.15 * i));
+        finals[scenes.back()] = rendered(*scenes.back(), camera());
+    }
+    const auto near = [](Rgba8 a, Rgba8 b) {
+        return std::abs(a.r - b.r) <= 1 && std::abs(a.g - b.g) <= 1 && std::abs(a.b - b.b) <= 1;
+    };
+    const auto check = [&] {
+        const SceneValue scene = session.state().scene;
+        if (scene == nullptr) return;
+        const std::vector<Rgba8>& final = finals.at(scene);
+        for (int j = 0; j < size.height; ++j)
+            for (int i = 0; i < size.width; ++i) {
+                const Rgba8 is = session.shown().color[static_cast<std::size_t>(j * size.width + i)];
+                bool known = false;
+                for (const int stride : {1, 2, 4, 8})
+                    known = known || near(is, final[static_cast<std::size_t>(
+                                                 (j - j % stride) * size.width + i - i % stride)]);
+                ASSERT_TRUE(known) << "seed " << seed << ", pixel " << i << ", " << j;
+            }
+    };
+    for (int edit = 0; edit < 40; ++edit) {
+        show(scenes[random() % scenes.size()]);
+        for (int look = 0; look < 3; ++look) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(pause(random)));
+            session.poll(look % 2 == 0);
+            check();
+            if (HasFatalFailure()) return;
+        }
+    }
+    show(scenes[3]);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, finals.at(scenes[3]));
+}
+
+TEST_F(Session, TheOldPictureStaysUntilTheNewOneIsComplete) {
+    const SceneValue first = with_left_blob_at(-1.2), second = with_left_blob_at(-0.4);
+    show(first);
+    ASSERT_TRUE(wait_final());
+    const std::vector<Rgba8> before = session.shown().color;
+    show(second);
+    while (!session.first_picture_ready()) {
+        session.poll(true);
+        if (session.state().scene != first) break;
+        ASSERT_EQ(session.shown().color, before);
+    }
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.state().scene, second);
+}
+
+TEST_F(Session, AnEditCancelsRefinement) {
+    constexpr WindowSize large{900, 700};
+    show(with_left_blob_at(-1.2), camera(), large);
+    ASSERT_TRUE(wait_first());
+    Camera other = camera();
+    other.position.y += 0.1;
+    show(with_left_blob_at(-1.2), other, size);
+    ASSERT_TRUE(wait_final());
+    const SessionTotals totals = session.totals();
+    EXPECT_EQ(totals.begun, 2u);
+    EXPECT_EQ(totals.cancelled, 1u);
+    EXPECT_LT(totals.pixels_traced, static_cast<std::uint64_t>(large.width * large.height));
+    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), other));
+}
+
+TEST_F(Session, OnlyTheLastOfManyRequestsHasToBeDone) {
+    for (int i = 0; i < 100; ++i) show(with_left_blob_at(-1.2 + 0.01 * i));
+    ASSERT_TRUE(wait_final());
+    EXPECT_LT(session.totals().begun, 100u);
+    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2 + 0.01 * 99), camera()));
+}
+
+TEST_F(Session, AColourTracesNothing) {
+    auto scene = std::make_shared<Scene>(two_blobs());
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    const SessionTotals before = session.totals();
+    auto recoloured = std::make_shared<Scene>(*scene);
+    recoloured->elements[0].color = {0.2, 0.9, 0.3};
+    recoloured->background = {0.3, 0.1, 0.1};
+    recoloured->lights = std::vector<Light>{Light{{0, 1, 1}}};
+    show(recoloured);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.totals().tiles_traced, before.tiles_traced);
+    EXPECT_EQ(session.totals().pixels_traced, before.pixels_traced);
+    EXPECT_EQ(session.shown().color, rendered(*recoloured, camera()));
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+}
+
+TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {
+    auto scene = std::make_shared<const Scene>(two_blobs());
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    const std::uint64_t all = session.totals().tiles_traced;
+    auto moved = std::make_shared<Scene>(*scene);
+    moved->elements[0].width = 1.3;
+    show(moved);
+    ASSERT_TRUE(wait_first());
+    EXPECT_LT(session.totals().tiles_traced - all, all * 3 / 4);
+    // and in the end everything, so that not a byte is an older scene's
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.totals().tiles_traced, 2 * all);
+    EXPECT_EQ(session.shown().color, rendered(*moved, camera()));
+}
+
+TEST_F(Session, ADragEndsExactlyWhereverItWent) {
+    show(with_left_blob_at(-1.2));
+    ASSERT_TRUE(wait_final());
+    for (int i = 0; i <= 25; ++i) {
+        show(with_left_blob_at(-1.2 + 0.1 * i));
+        if (i % 5 != 0) continue;
+        ASSERT_TRUE(wait_first());
+        session.poll(true);
+    }
+    show(with_left_blob_at(-1.2));
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), camera()));
+}
+
+TEST_F(Session, AnotherSizeReplacesThePictureAsAWhole) {
+    const SceneValue scene = with_left_blob_at(-1.2);
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    for (const WindowSize other : {WindowSize{97, 61}, WindowSize{1, 1}, WindowSize{333, 17}}) {
+        show(scene, camera(), other);
+        bool replaced = false;
+        ASSERT_TRUE(wait_until([&] {
+            const PictureChange change = session.poll(false);
+            replaced = replaced || change.all;
+            return session.state().final;
+        }));
+        EXPECT_TRUE(replaced);
+        EXPECT_EQ(session.shown().size, other);
+        EXPECT_EQ(session.shown().color, rendered(*scene, camera(), other));
+    }
+}
+
+TEST_F(Session, AnEmptySceneIsSaidToBeEmpty) {
+    auto scene = std::make_shared<Scene>();
+    scene->background = {0.2, 0.3, 0.4};
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_TRUE(session.state().surface_certainly_empty);
+    EXPECT_EQ(session.state().hit, 0u);
+    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+}
+
+TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
+    const SceneValue scene = with_left_blob_at(-1.2);
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    Camera broken = camera();
+    broken.target = broken.position;
+    show(scene, broken);
+    ASSERT_TRUE(wait_until([&] {
+        session.poll(false);
+        return !session.state().fault.empty();
+    }));
+    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));  // the old picture
+    EXPECT_FALSE(session.state().final);
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_TRUE(session.state().fault.empty());
+    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+}
+
+TEST(RenderSessionLife, EndsWhileItWorks) {
+    for (int i = 0; i < 20; ++i) {
+        RenderSession session({2, tolerance, [] {}});
+        session.show({with_left_blob_at(-1.2), camera(), {600, 400}, std::nullopt, Clock::now()});
+        std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
+        session.poll(true);
+    }
+}
+
+}  // namespace
+}  // namespace ivory

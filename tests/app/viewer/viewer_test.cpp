@@ -1,0 +1,314 @@
+// The whole viewer in memory, on each context: what it draws, and the script that drives it.
+#include "app/viewer/viewer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "app/panels/panels.h"
+#include "app/viewer/frame_texture.h"
+#include "app/viewer/script.h"
+#include "app/viewer/script_player.h"
+#include "app/viewer/state_file.h"
+#include "core/render/camera.h"
+#include "core/render/canvas.h"
+#include "core/render/render.h"
+#include "core/scene/error.h"
+#include "tests/app/platform/memory_contexts.h"
+
+namespace ivory {
+namespace {
+
+using nlohmann::json;
+
+const std::string figure_1 = std::string(IVORY_SOURCE_DIR) + "/assets/scenes/figure-1.ivory.json";
+
+// A viewer in memory with figure-1, driven by lines of script.
+class Driven {
+  public:
+    Driven(MemoryContext& context, WindowSize size)
+        : context_(context), events_(size), viewer_(context, settings(wake_up_)) {
+        open_scene(viewer_.state(), figure_1);
+    }
+
+    void play(const std::string& lines) { player_.play(parse_script(lines, "test")); }
+    // What the script's failure says; empty: it does not fail.
+    std::string failure(const std::string& lines) {
+        try {
+            play(lines);
+            return "";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+    Viewer& viewer() { return viewer_; }
+    ViewerState& state() { return viewer_.state(); }
+
+  private:
+    static ViewerSettings settings(WakeUp& wake_up) {
+        ViewerSettings settings;
+        settings.threads = 2;
+        settings.wake = [&wake_up] { wake_up.wake(); };
+        settings.hold_back_coarse = false;
+        return settings;
+    }
+
+    MemoryContext& context_;
+    EventQueue events_;
+    WakeUp wake_up_;
+    Viewer viewer_;
+    ScriptPlayer player_{viewer_, context_, events_, wake_up_, [] {}};
+};
+
+std::vector<Rgba8> colors_of(const Frame& frame, const WindowRect& rect) {
+    std::vector<Rgba8> colors;
+    for (int j = 0; j < rect.height; ++j)
+        for (int i = 0; i < rect.width; ++i) colors.push_back(frame.color[frame.at(rect.x + i, rect.y + j)]);
+    return colors;
+}
+
+std::vector<Rgba8> rendered(const Scene& scene, WindowSize size) {
+    Picture picture;
+    picture.field = std::make_shared<const Field>(compile(scene));
+    picture.view = make_view(*scene.camera);
+    picture.lighting = make_lighting(scene, picture.view);
+    picture.method = methods().front();
+    picture.options.tolerance = 1e-6;
+    Canvas canvas(size.width, size.height, false);
+    JobSettings settings;
+    settings.threads = 2;
+    render(picture, canvas, settings);
+    return colors_of(canvas.frame, {0, 0, size.width, size.height});
+}
+
+class InMemory : public OnEachContext {
+  protected:
+    // Whether the viewport, without what is drawn over it, is what `ivory render` draws.
+    static bool viewport_is_render(Driven& driven) {
+        driven.viewer().hide_overlay(true);
+        driven.play(R"({"wait": "final"})");
+        driven.viewer().hide_overlay(false);
+        const WindowRect viewport = driven.state().viewport;
+        return colors_of(driven.viewer().read_back(), viewport) ==
+               rendered(driven.state().scene_with_view(), viewport.size());
+    }
+};
+IVORY_ON_EACH_CONTEXT(InMemory);
+
+TEST_P(InMemory, TheViewportIsByteForByteWhatRenderDraws) {
+    const auto context = context_or_skip({760, 420});
+    if (!context) return;
+    Driven driven(*context, {760, 420});
+    EXPECT_TRUE(viewport_is_render(driven));
+}
+
+TEST_P(InMemory, AtOtherSizesAndScalesToo) {
+    const auto context = context_or_skip({760, 420});
+    if (!context) return;
+    Driven driven(*context, {760, 420});
+    driven.play(R"({"resize": "1400x800"}
+                   {"scale": 2})");
+    EXPECT_TRUE(viewport_is_render(driven));
+    EXPECT_EQ(driven.state().scale, 2);
+    driven.play(R"({"scale": 1}
+                   {"resize": "641x377"})");
+    EXPECT_TRUE(viewport_is_render(driven));
+    EXPECT_EQ(driven.state().window, (WindowSize{641, 377}));
+    driven.play(R"({"key": "tab"})");
+    EXPECT_TRUE(viewport_is_render(driven));
+}
+
+TEST_P(InMemory, ATinyWindowIsNoAccident) {
+    const auto context = context_or_skip({400, 300});
+    if (!context) return;
+    Driven driven(*context, {400, 300});
+    EXPECT_EQ(driven.failure(R"({"resize": "1x1"}
+                                {"frames": 3}
+                                {"resize": "40x400"}
+                                {"wait": "final"}
+                                {"resize": "400x300"}
+                                {"wait": "final"})"),
+              "");
+}
+
+TEST_P(InMemory, OpenGlReportsNoError) {
+    const auto context = context_or_skip({500, 400});
+    if (!context) return;
+    Driven driven(*context, {500, 400});
+    driven.play(R"({"wait": "final"}
+                   {"theme": "light"}
+                   {"scale": 1.5}
+                   {"widget": "threshold", "set": 0.4}
+                   {"wait": "final"})");
+    EXPECT_EQ(context->gl().GetError(), gl::no_error);
+}
+
+TEST_P(InMemory, AScriptSaysWhatFailsAndWhere) {
+    const auto context = context_or_skip({900, 600});
+    if (!context) return;
+    Driven driven(*context, {900, 600});
+    EXPECT_EQ(driven.failure(R"({"expect": {"threshold": 0.55}})"), "");
+    EXPECT_EQ(driven.failure("\n{\"expect\": {\"threshold\": 0.5}}"),
+              "test, line 2: expected \"threshold\" to be 0.5, it is 0.55");
+    EXPECT_EQ(driven.failure(R"({"expect": {"threshold": 0.5}, "within": 0.06})"), "");
+    EXPECT_EQ(driven.failure(R"({"expect": {"nonsense": 1}})"),
+              "test, line 1: expected \"nonsense\" to be 1, but neither the scene nor the state has it");
+    EXPECT_EQ(driven.failure(R"({"widget": "thresold", "set": 1})"),
+              "test, line 1: no control \"thresold\" is on the screen; \"threshold\" is");
+    EXPECT_EQ(driven.failure(R"({"widget": "threshold", "set": "high"})"),
+              "test, line 1: \"threshold\" takes a number, not \"high\"");
+    EXPECT_EQ(driven.failure(R"({"widget": "edit.undo"})"), "test, line 1: the control \"edit.undo\" is greyed");
+    driven.play(R"({"key": "escape"})");
+    EXPECT_EQ(driven.failure(R"({"widget": "add.point", "set": true})"),
+              "test, line 1: \"add.point\" can be clicked, not set; leave \"set\" out");
+    EXPECT_NE(driven.failure(R"({"select": "nobody"})").find("no element is called \"nobody\"; there are "),
+              std::string::npos);
+    EXPECT_NE(driven.failure(R"({"drag": {"element": "point 1", "handle": "radius", "by": [1, 1]}})")
+                  .find("\"point 1\" has no handle \"radius\""),
+              std::string::npos);
+    EXPECT_NE(driven.failure(R"({"pick": [2, 2]})").find("lies outside of the picture"), std::string::npos);
+}
+
+TEST_P(InMemory, ANumberIsSetToTheLastBit) {
+    const auto context = context_or_skip({900, 600});
+    if (!context) return;
+    Driven driven(*context, {900, 600});
+    driven.play(R"({"widget": "threshold", "set": 0.12345678901234567}
+                   {"expect": {"threshold": 0.12345678901234567}}
+                   {"select": "point 1"}
+                   {"widget": "element.position.x", "set": -1e-7}
+                   {"expect": {"/elements/0/position/0": -1e-7, "selection": "point 1"}})");
+    EXPECT_EQ(driven.state().document.scene().threshold, 0.12345678901234567);
+}
+
+TEST_P(InMemory, WhatIsScrolledAwayIsScrolledTo) {
+    const auto context = context_or_skip({900, 300});
+    if (!context) return;
+    Driven driven(*context, {900, 300});
+    driven.play(R"({"select": "point 2"}
+                   {"widget": "light.1.intensity", "set": 0.25}
+                   {"expect": {"/lights/1/intensity": 0.25}}
+                   {"widget": "element.name", "set": "a"}
+                   {"expect": {"/elements/1/name": "a"}})");
+}
+
+TEST_P(InMemory, TheStateTellsWhatTheContractAsksFor) {
+    const auto context = context_or_skip({900, 600});
+    if (!context) return;
+    Driven driven(*context, {900, 600});
+    driven.play(R"({"wait": "final"}
+                   {"select": "point 2"})");
+    const json state = json::parse(state_text(state_json(driven.viewer(), 0)));
+    const WindowRect viewport = driven.state().viewport;
+    EXPECT_EQ(state["viewport"], json({viewport.x, viewport.y, viewport.width, viewport.height}));
+    EXPECT_EQ(state["selection"], "point 2");
+    EXPECT_TRUE(state["final"].get<bool>());
+    EXPECT_EQ(state["tiles"]["traced"], state["tiles"]["total"]);
+    EXPECT_EQ(state["pixels"]["hit"].get<int>() + state["pixels"]["miss"].get<int>() +
+                  state["pixels"]["unresolved"].get<int>(),
+              viewport.width * viewport.height);
+    EXPECT_TRUE(state["widgets"].contains("threshold"));
+    EXPECT_TRUE(state["handles"]["point 2"].contains("position"));
+    EXPECT_EQ(state["camera"]["position"].size(), 3u);
+    EXPECT_FALSE(state["milliseconds"]["frames"].empty());
+    EXPECT_FALSE(state["milliseconds"]["edits"].empty());
+}
+
+TEST_P(InMemory, ABrokenFileLeavesThePictureAndSaysWhy) {
+    const auto context = context_or_skip({900, 600});
+    if (!context) return;
+    Driven driven(*context, {900, 600});
+    driven.play(R"({"wait": "final"})");
+    const WindowRect viewport = driven.state().viewport;
+    driven.viewer().hide_overlay(true);
+    driven.play(R"({"frames": 1})");
+    const auto before = colors_of(driven.viewer().read_back(), viewport);
+    driven.play(R"({"drop": "/nonexistent.ivory.json"})");
+    EXPECT_EQ(colors_of(driven.viewer().read_back(), viewport), before);
+    EXPECT_NE(driven.state().message.text.find("/nonexistent.ivory.json"), std::string::npos);
+    EXPECT_TRUE(driven.state().message.error);
+    EXPECT_EQ(driven.state().document.path(), std::filesystem::path(figure_1));
+}
+
+TEST_P(InMemory, AFrameIsWantedOnlyWhileSomethingChanges) {
+    const auto context = context_or_skip({500, 400});
+    if (!context) return;
+    Driven driven(*context, {500, 400});
+    driven.play(R"({"wait": "final"}
+                   {"frames": 5})");
+    EXPECT_LT(driven.viewer().next_frame_wanted(), 0);
+}
+
+// Draws the texture alone, as the viewer does.
+std::vector<Rgba8> drawn(const MemoryContext& context, const FrameTexture& texture, const WindowRect& viewport) {
+    const WindowSize size = context.size();
+    const Gl& gl = context.gl();
+    gl.BindFramebuffer(gl::framebuffer, context.framebuffer());
+    texture.draw(viewport, size, {1, 2, 3, 255});
+    Frame frame(size.width, size.height, false);
+    gl.PixelStorei(gl::pack_alignment, 1);
+    gl.ReadPixels(0, 0, size.width, size.height, gl::rgba, gl::unsigned_byte, &frame.color[0]);
+    std::vector<Rgba8> colors;
+    for (int j = viewport.y; j < viewport.y + viewport.height; ++j)
+        for (int i = viewport.x; i < viewport.x + viewport.width; ++i)
+            colors.push_back(frame.color[frame.at(i, size.height - 1 - j)]);
+    return colors;
+}
+
+class FrameTextures : public OnEachContext {};
+IVORY_ON_EACH_CONTEXT(FrameTextures);
+
+TEST_P(FrameTextures, PixelForPixelAndOnlyWhatChanged) {
+    const auto context = context_or_skip({90, 70});
+    if (!context) return;
+    FrameTexture texture(context->gl());
+    ShownPicture picture{{50, 40}, std::vector<Rgba8>(50 * 40), {}};
+    for (std::size_t p = 0; p < picture.color.size(); ++p)
+        picture.color[p] = {static_cast<std::uint8_t>(p), static_cast<std::uint8_t>(p * 7),
+                            static_cast<std::uint8_t>(p / 50), 255};
+    texture.update(picture, {.replaced = true, .all = true, .tiles = {}});
+    const WindowRect viewport{11, 9, 50, 40};
+    EXPECT_EQ(drawn(*context, texture, viewport), picture.color);
+
+    std::vector<Rgba8> expected = picture.color;
+    const std::vector<PixelRect> tiles = {{16, 16, 32, 32}, {48, 32, 50, 40}, {32, 16, 48, 32}};
+    for (Rgba8& color : picture.color) color = {200, 100, 50, 255};
+    for (const PixelRect& tile : tiles)
+        for (int j = tile.y0; j < tile.y1; ++j)
+            for (int i = tile.x0; i < tile.x1; ++i)
+                expected[static_cast<std::size_t>(j * 50 + i)] = {200, 100, 50, 255};
+    texture.update(picture, {.replaced = false, .all = false, .tiles = tiles});
+    EXPECT_EQ(drawn(*context, texture, viewport), expected);
+}
+
+TEST_P(FrameTextures, AnotherSizeThanTheViewportStandsInItsMiddle) {
+    const auto context = context_or_skip({90, 70});
+    if (!context) return;
+    FrameTexture texture(context->gl());
+    const ShownPicture picture{{20, 10}, std::vector<Rgba8>(200, Rgba8{9, 8, 7, 255}), {}};
+    const WindowRect viewport{5, 5, 30, 20};
+    EXPECT_EQ(drawn(*context, texture, viewport), std::vector<Rgba8>(600, Rgba8{1, 2, 3, 255}));
+    texture.update(picture, {.replaced = true, .all = true, .tiles = {}});
+    const std::vector<Rgba8> colors = drawn(*context, texture, viewport);
+    for (int j = 0; j < 20; ++j)
+        for (int i = 0; i < 30; ++i) {
+            const bool inside = i >= 5 && i < 25 && j >= 5 && j < 15;
+            EXPECT_EQ(colors[static_cast<std::size_t>(j * 30 + i)],
+                      (inside ? Rgba8{9, 8, 7, 255} : Rgba8{1, 2, 3, 255}))
+                << i << ", " << j;
+        }
+}
+
+TEST(RowsOfTiles, NeighboursInARowBecomeOne) {
+    EXPECT_TRUE(rows_of_tiles({}).empty());
+    const std::vector<PixelRect> rows =
+        rows_of_tiles({{32, 0, 48, 16}, {0, 16, 16, 32}, {0, 0, 16, 16}, {16, 0, 32, 16}, {32, 16, 48, 32}});
+    EXPECT_EQ(rows, (std::vector<PixelRect>{{0, 0, 48, 16}, {0, 16, 16, 32}, {32, 16, 48, 32}}));
+}
+
+}  // namespace
+}  // namespace ivory
