@@ -11,7 +11,7 @@ double one_norm(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::ab
 
 // The lemma's range: no product of two of its quantities overflows, none that matters underflows.
 bool usable(double kappa, double reach, double span) {
-    return kappa > 1e-100 && kappa < 1e100 && reach < 1e100 && kappa * span < 1e100;
+    return kappa > 1e-75 && kappa < 1e75 && reach < 1e75 && kappa * span < 1e75;
 }
 
 // (o - c) + t d with one rounding, nearly: the sum and the product without error (Knuth's TwoSum,

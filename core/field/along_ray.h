@@ -18,7 +18,7 @@
 // v.e. The dot products carry 3 u each, the polynomial 5 u more, tau one u (which moves v by u
 // kappa |tau|): at most 8 u of R^2 + 2 u R^2 for s, 12 u R kappa for s'. The constants leave room
 // for the roundings of the radius itself. Products that underflow are covered by the absolute term
-// of s_radius: kappa and rho are kept within 1e+-100 by `usable`.
+// of s_radius: kappa and rho are kept within 1e+-75 by `usable`.
 #pragma once
 
 #include <algorithm>

@@ -70,7 +70,7 @@ double reach(const Field& field, std::size_t i, std::size_t positive) {
             (certainly_low(field, i, middle, n) ? s : lo) = middle;
         }
     }
-    return std::sqrt(s) * field.width[i] * (1 + 8 * u);
+    return next_up(std::sqrt(s) * field.width[i] * (1 + 8 * u));
 }
 
 Box3 skeleton_box(const Field& field, std::size_t i) {

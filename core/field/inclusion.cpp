@@ -102,7 +102,10 @@ Terms composed(KernelKind kernel, const Interval<double>& s0, const Interval<dou
         k.left = kernel_over(kernel, s0);
         k.right = kernel_over(kernel, s1);
         k.left_slope =
-            quick::mul({kernel_slope_at(kernel, s0.lo).lo, kernel_slope_at(kernel, s0.hi).hi}, ds0);
+            is_empty(s0)
+                ? Interval<double>::entire()
+                : quick::mul({kernel_slope_at(kernel, s0.lo).lo, kernel_slope_at(kernel, s0.hi).hi},
+                             ds0);
     }
     k.value = range.k;
     k.slope = quick::mul(range.dk, ds);
@@ -227,6 +230,13 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
         element.strength = std::ldexp(element.strength, -exponent_);
         element.beyond = {std::ldexp(element.beyond.lo, -exponent_),
                           std::ldexp(element.beyond.hi, -exponent_)};
+        // What is known of nothing but 0 <= k <= 1 would leave the derivatives unbounded; where it
+        // is too weak to matter it only widens the rest.
+        if (element.form == ElementAlongRay::Form::unbounded &&
+            std::abs(element.strength) <= 0x1p-50 / static_cast<double>(field.size())) {
+            element.beyond = {std::min(element.strength, 0.0), std::max(element.strength, 0.0)};
+            element.active = Interval<double>::empty_set();
+        }
         if (is_empty(element.active)) {
             rest.add(1, element.beyond);
             peaks.add(1, element.beyond);

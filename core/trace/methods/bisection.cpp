@@ -91,7 +91,14 @@ Isolation Bisection::isolate(const Field& field, const ElementList& list, const 
     if (!(span.hi < infinity<double>)) return {Status::unresolved, {0.0, infinity<double>}};
 
     const Point origin = point(scaled_ray.origin);
-    const Point direction = point(scaled_ray.direction);
+    Point direction = point(scaled_ray.direction);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        // A component that underflowed when the ray was scaled.
+        const double d = scaled_ray.direction[axis];
+        if (std::abs(d) < std::numeric_limits<double>::min() && ray.direction[axis] != 0) {
+            direction[axis] = {next_down(d), next_up(d)};
+        }
+    }
     const double least_width = options.tolerance * field.least_width /
                                std::sqrt(dot(scaled_ray.direction, scaled_ray.direction));
 
