@@ -136,9 +136,9 @@ TEST_P(InMemory, ATinyWindowIsNoAccident) {
 }
 
 TEST_P(InMemory, OpenGlReportsNoError) {
-    const auto context = context_or_skip({500, 400});
+    const auto context = context_or_skip({1000, 700});
     if (!context) return;
-    Driven driven(*context, {500, 400});
+    Driven driven(*context, {1000, 700});
     driven.play(R"({"wait": "final"}
                    {"theme": "light"}
                    {"scale": 1.5}
