@@ -8,8 +8,8 @@ namespace ivory {
 
 namespace {
 
-// So many elements are kept in all the scenes of the history together, about 300 MB; a scene of a few
-// hundred elements can be undone ten thousand times.
+// So many elements are kept in all the scenes of the history together, about 300 MB; a scene of a
+// few hundred elements can be undone ten thousand times.
 constexpr std::size_t most_elements_kept = 2'000'000;
 
 }  // namespace
@@ -73,9 +73,9 @@ void Document::begin_drag(const std::string& what) {
 
 void Document::drag_to(Scene scene) {
     if (!dragging() || scene == *current_) return;
-    set_current(scene == *before_drag_ ? before_drag_
-                                       : std::make_shared<const Scene>(std::move(scene)),
-                selected_);
+    set_current(
+        scene == *before_drag_ ? before_drag_ : std::make_shared<const Scene>(std::move(scene)),
+        selected_);
 }
 
 void Document::end_drag() {
@@ -88,9 +88,7 @@ void Document::cancel_drag() {
     if (dragging()) set_current(std::exchange(before_drag_, nullptr), selected_);
 }
 
-std::string Document::undo_name() const {
-    return position_ > 0 ? history_[position_].what : "";
-}
+std::string Document::undo_name() const { return position_ > 0 ? history_[position_].what : ""; }
 
 std::string Document::redo_name() const {
     return position_ + 1 < history_.size() ? history_[position_ + 1].what : "";

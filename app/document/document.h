@@ -33,8 +33,8 @@ class Document {
     void edit(const std::string& what, Scene scene);
     void edit(const std::string& what, Scene scene, Selection selected);
 
-    // A drag: from `begin_drag` on, `drag_to` replaces the scene without an entry; `end_drag` makes one
-    // entry of it all, `cancel_drag` restores the scene that was, to the byte and the pointer.
+    // A drag: from `begin_drag` on, `drag_to` replaces the scene without an entry; `end_drag` makes
+    // one entry of it all, `cancel_drag` restores the scene that was, to the byte and the pointer.
     void begin_drag(const std::string& what);
     void drag_to(Scene scene);
     void end_drag();

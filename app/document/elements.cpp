@@ -41,7 +41,8 @@ std::string_view stem(std::string_view name) {
 }
 
 // The first of "STEM n", n = first, first + 1, ... that no element has.
-std::string free_name(const std::vector<std::string>& names, std::string_view stem, std::size_t first) {
+std::string free_name(const std::vector<std::string>& names, std::string_view stem,
+                      std::size_t first) {
     const std::set<std::string_view> taken(names.begin(), names.end());
     for (std::size_t n = first;; ++n) {
         std::string name = std::string(stem) + " " + std::to_string(n);
@@ -75,7 +76,9 @@ Element new_element(ElementShape shape, Vec3d place, double size, std::size_t el
     const Vec3d at{tidy(place.x, exponent), tidy(place.y, exponent), tidy(place.z, exponent)};
     Element element;
     switch (shape) {
-        case ElementShape::point: element.skeleton = PointSkeleton{at}; break;
+        case ElementShape::point:
+            element.skeleton = PointSkeleton{at};
+            break;
         case ElementShape::segment:
             element.skeleton = SegmentSkeleton{{tidy(at.x - size, exponent), at.y, at.z},
                                                {tidy(at.x + size, exponent), at.y, at.z}};

@@ -1,5 +1,5 @@
-// Changes of the list of elements, each a scene in and a scene out that is valid again: no two elements
-// share a name, defaults included.
+// Changes of the list of elements, each a scene in and a scene out that is valid again: no two
+// elements share a name, defaults included.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ namespace ivory {
 
 enum class ElementShape : std::uint8_t { point, segment, circle };
 
-// A new element around a place of the scene, `size` being its width: a segment of twice that length, a
-// circle of 1.5 times that radius. Its coordinates are multiples of a power of ten near size / 50, and
-// its colour differs from those of the elements before it.
+// A new element around a place of the scene, `size` being its width: a segment of twice that
+// length, a circle of 1.5 times that radius. Its coordinates are multiples of a power of ten near
+// size / 50, and its colour differs from those of the elements before it.
 [[nodiscard]] Element new_element(ElementShape shape, Vec3d place, double size,
                                   std::size_t elements_before);
 

@@ -17,32 +17,27 @@ namespace ivory {
 
 namespace {
 
-constexpr double zoom_per_step = 0.88;   // of the distance, by one notch of the wheel
-constexpr double pole_margin = 0.1;      // degrees that an orbit keeps from `up`
-constexpr double frame_margin = 1.1;     // as core/render/camera.h
+constexpr double zoom_per_step = 0.88;  // of the distance, by one notch of the wheel
+constexpr double pole_margin = 0.1;     // degrees that an orbit keeps from `up`
+constexpr double frame_margin = 1.1;    // as core/render/camera.h
 
-glm::dvec3 to_glm(const Vec3d& v) {
-    return glm::dvec3(v.x, v.y, v.z);
-}
+glm::dvec3 to_glm(const Vec3d& v) { return glm::dvec3(v.x, v.y, v.z); }
 
-Vec3d from_glm(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
+Vec3d from_glm(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 double distance(const Camera& camera) {
     const Vec3d line = camera.position - camera.target;
     return std::hypot(line.x, line.y, line.z);
 }
 
-// What the camera of an edit of the view may become; where numbers run out the view stays as it was.
-Camera unless_lost(const Camera& next, const Camera& now) {
-    return find_fault(next) ? now : next;
-}
+// What the camera of an edit of the view may become; where numbers run out the view stays as it
+// was.
+Camera unless_lost(const Camera& next, const Camera& now) { return find_fault(next) ? now : next; }
 
 // The view as turntable: elevation above the plane across `up`, and the level direction towards the
 // camera.
 struct Turntable {
-    bool from_pole;    // straight along y, where the camera's `up` lies across it
+    bool from_pole;  // straight along y, where the camera's `up` lies across it
     glm::dvec3 up;
     glm::dvec3 level;  // unit, across `up`
     double elevation;  // radians
@@ -53,8 +48,8 @@ Turntable turntable_of(const Projection& view) {
     const bool from_pole = std::hypot(view.back().x, view.back().z) < 1e-9;
     const glm::dvec3 up = from_pole ? glm::dvec3(0, 1, 0) : to_glm(unit(view.camera().up));
     const double sine = glm::clamp(glm::dot(back, up), -1.0, 1.0);
-    // Near the poles `top` says where level is better than `back` does: both are combinations of it and
-    // `up`, with cos and -sin of the elevation.
+    // Near the poles `top` says where level is better than `back` does: both are combinations of it
+    // and `up`, with cos and -sin of the elevation.
     const glm::dvec3 level = std::abs(sine) < 0.9 ? back - sine * up
                              : sine > 0           ? glm::dot(top, up) * up - top
                                                   : top - glm::dot(top, up) * up;
@@ -117,8 +112,8 @@ Camera panned(const Projection& view, double dx, double dy) {
     return centred(view, view.moved(view.camera().target, -dx, -dy));
 }
 
-// A scaling about the place under the pointer moves camera and target but turns nothing, so that the
-// place itself, and everything on its line of sight, stays where it is seen.
+// A scaling about the place under the pointer moves camera and target but turns nothing, so that
+// the place itself, and everything on its line of sight, stays where it is seen.
 Camera zoomed(const Projection& view, WindowPoint at, double steps) {
     Camera camera = view.camera();
     const Vec3d direction = view.direction(at);
@@ -128,8 +123,8 @@ Camera zoomed(const Projection& view, WindowPoint at, double steps) {
     camera.position = still + factor * (camera.position - still);
     camera.target = still + factor * (camera.target - still);
     // nearer than that, the places of the scene run out of doubles
-    const double size = std::max({std::abs(camera.target.x), std::abs(camera.target.y),
-                                  std::abs(camera.target.z), 1e-100});
+    const double size = std::max(
+        {std::abs(camera.target.x), std::abs(camera.target.y), std::abs(camera.target.z), 1e-100});
     if (steps > 0 && distance(camera) < 1e-9 * size) return view.camera();
     return unless_lost(camera, view.camera());
 }

@@ -1,5 +1,6 @@
 // Mouse -> camera, and scene <-> window. The state of the view is a Camera of the scene format and
-// nothing else, so that what is saved is bit for bit what is seen. Everything here is a pure function.
+// nothing else, so that what is saved is bit for bit what is seen. Everything here is a pure
+// function.
 #pragma once
 
 #include <optional>
@@ -26,8 +27,8 @@ class Projection {
     [[nodiscard]] Vec3d direction(WindowPoint at) const;
     // Length in the scene of one pixel at that place's depth, > 0.
     [[nodiscard]] double length_of_pixel(Vec3d place) const;
-    // `place` moved by so many pixels in the plane through it that is parallel to the screen: it is then
-    // seen so many pixels further right and down.
+    // `place` moved by so many pixels in the plane through it that is parallel to the screen: it is
+    // then seen so many pixels further right and down.
     [[nodiscard]] Vec3d moved(Vec3d place, double dx, double dy) const;
     // Axes of the picture: unit right, top and back.
     [[nodiscard]] Vec3d right() const { return right_; }
@@ -41,13 +42,14 @@ class Projection {
     double pixels_per_slope_;  // at depth 1 so many pixels are a length of 1
 };
 
-// Around the target by a drag of so many pixels: a whole turn is about the picture's height times 2.
-// The horizon stays level (turntable about `up`), the poles are not crossed. From the view straight
-// along the y axis the turntable is again the one about y.
+// Around the target by a drag of so many pixels: a whole turn is about the picture's height
+// times 2. The horizon stays level (turntable about `up`), the poles are not crossed. From the view
+// straight along the y axis the turntable is again the one about y.
 [[nodiscard]] Camera orbited(const Projection& view, double dx, double dy);
 // The place under the pointer, at the target's depth, follows a drag of so many pixels.
 [[nodiscard]] Camera panned(const Projection& view, double dx, double dy);
-// Nearer (steps > 0) or farther, the place under `at` at the target's depth staying where it is seen.
+// Nearer (steps > 0) or farther, the place under `at` at the target's depth staying where it is
+// seen.
 [[nodiscard]] Camera zoomed(const Projection& view, WindowPoint at, double steps);
 // The same direction of view, so far away that the sphere around the box fits the picture; an empty
 // box counts as [-1, 1]^3.

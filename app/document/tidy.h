@@ -5,8 +5,8 @@
 
 namespace ivory {
 
-// The double nearest to the multiple of 10^exponent that is nearest to `value`; `value` itself where
-// doubles are coarser than that. |exponent| <= 300.
+// The double nearest to the multiple of 10^exponent that is nearest to `value`; `value` itself
+// where doubles are coarser than that. |exponent| <= 300.
 [[nodiscard]] inline double tidy(double value, int exponent) {
     const double power = std::pow(10.0, std::abs(exponent));
     const double rounded =

@@ -23,8 +23,12 @@ constexpr std::array actions = {
     ActionInfo{Action::start_anew, "file.new", "New", "Ctrl+N", {Key::n, ctrl}},
     ActionInfo{Action::open, "file.open", "Open\xE2\x80\xA6", "Ctrl+O", {Key::o, ctrl}, true},
     ActionInfo{Action::save, "file.save", "Save", "Ctrl+S", {Key::s, ctrl}},
-    ActionInfo{Action::save_as, "file.save_as", "Save as\xE2\x80\xA6", "Ctrl+Shift+S",
-               {Key::s, ctrl_shift}, true},
+    ActionInfo{Action::save_as,
+               "file.save_as",
+               "Save as\xE2\x80\xA6",
+               "Ctrl+Shift+S",
+               {Key::s, ctrl_shift},
+               true},
     ActionInfo{Action::screenshot, "file.screenshot", "Screenshot", "F12", {Key::f12, plain}, true},
     ActionInfo{Action::quit, "file.quit", "Quit", "Ctrl+Q", {Key::q, ctrl}},
     ActionInfo{Action::undo, "edit.undo", "Undo", "Ctrl+Z", {Key::z, ctrl}},
@@ -96,9 +100,7 @@ void focus_selected(ViewerState& state) {
 
 }  // namespace
 
-std::span<const ActionInfo> all_actions() {
-    return actions;
-}
+std::span<const ActionInfo> all_actions() { return actions; }
 
 const ActionInfo& info(Action action) {
     return *std::find_if(actions.begin(), actions.end(),
@@ -107,29 +109,40 @@ const ActionInfo& info(Action action) {
 
 bool is_possible(const ViewerState& state, Action action) {
     switch (action) {
-        case Action::undo: return !state.document.undo_name().empty();
-        case Action::redo: return !state.document.redo_name().empty();
+        case Action::undo:
+            return !state.document.undo_name().empty();
+        case Action::redo:
+            return !state.document.redo_name().empty();
         case Action::remove:
         case Action::duplicate:
         case Action::hide:
-        case Action::focus: return state.document.selected().has_value();
-        default: return true;
+        case Action::focus:
+            return state.document.selected().has_value();
+        default:
+            return true;
     }
 }
 
 bool is_on(const ViewerState& state, Action action) {
     switch (action) {
-        case Action::skeleton: return state.skeleton_shown;
-        case Action::theme: return state.theme == Theme::light;
-        case Action::panels: return !state.panels_hidden;
-        case Action::help: return state.help_shown;
-        default: return false;
+        case Action::skeleton:
+            return state.skeleton_shown;
+        case Action::theme:
+            return state.theme == Theme::light;
+        case Action::panels:
+            return !state.panels_hidden;
+        case Action::help:
+            return state.help_shown;
+        default:
+            return false;
     }
 }
 
 std::string label_of(const ViewerState& state, Action action) {
     const std::string label = info(action).label;
-    const auto about = [&](const std::string& what) { return what.empty() ? label : label + ": " + what; };
+    const auto about = [&](const std::string& what) {
+        return what.empty() ? label : label + ": " + what;
+    };
     if (action == Action::undo) return about(state.document.undo_name());
     if (action == Action::redo) return about(state.document.redo_name());
     const auto selected = state.document.selected();
@@ -144,16 +157,36 @@ void run(ViewerState& state, Action action) {
         set_camera(state, along_axis(state.projection(), axis, opposite));
     };
     switch (action) {
-        case Action::start_anew: request_new(state); return;
-        case Action::open: browse_to_open(state); return;
-        case Action::save: save_or_ask(state, std::nullopt); return;
-        case Action::save_as: browse_to_save(state, std::nullopt); return;
-        case Action::screenshot: state.screenshot_wanted = free_screenshot_path(state); return;
-        case Action::quit: request_quit(state); return;
-        case Action::undo: state.document.undo(); return;
-        case Action::redo: state.document.redo(); return;
-        case Action::remove: remove_selected(state); return;
-        case Action::duplicate: duplicate_selected(state); return;
+        case Action::start_anew:
+            request_new(state);
+            return;
+        case Action::open:
+            browse_to_open(state);
+            return;
+        case Action::save:
+            save_or_ask(state, std::nullopt);
+            return;
+        case Action::save_as:
+            browse_to_save(state, std::nullopt);
+            return;
+        case Action::screenshot:
+            state.screenshot_wanted = free_screenshot_path(state);
+            return;
+        case Action::quit:
+            request_quit(state);
+            return;
+        case Action::undo:
+            state.document.undo();
+            return;
+        case Action::redo:
+            state.document.redo();
+            return;
+        case Action::remove:
+            remove_selected(state);
+            return;
+        case Action::duplicate:
+            duplicate_selected(state);
+            return;
         case Action::hide: {
             const std::size_t element = *state.document.selected();
             set_visible(state, element, !state.document.scene().elements[element].visible);
@@ -162,19 +195,39 @@ void run(ViewerState& state, Action action) {
         case Action::frame_all:
             set_camera(state, framed(state.projection(), box_of_all(state.document.scene())));
             return;
-        case Action::focus: focus_selected(state); return;
-        case Action::front: look_along(2, false); return;
-        case Action::back: look_along(2, true); return;
-        case Action::right: look_along(0, false); return;
-        case Action::left: look_along(0, true); return;
-        case Action::top: look_along(1, false); return;
-        case Action::bottom: look_along(1, true); return;
-        case Action::skeleton: state.skeleton_shown = !state.skeleton_shown; return;
+        case Action::focus:
+            focus_selected(state);
+            return;
+        case Action::front:
+            look_along(2, false);
+            return;
+        case Action::back:
+            look_along(2, true);
+            return;
+        case Action::right:
+            look_along(0, false);
+            return;
+        case Action::left:
+            look_along(0, true);
+            return;
+        case Action::top:
+            look_along(1, false);
+            return;
+        case Action::bottom:
+            look_along(1, true);
+            return;
+        case Action::skeleton:
+            state.skeleton_shown = !state.skeleton_shown;
+            return;
         case Action::theme:
             state.theme = state.theme == Theme::dark ? Theme::light : Theme::dark;
             return;
-        case Action::panels: state.panels_hidden = !state.panels_hidden; return;
-        case Action::help: state.help_shown = !state.help_shown; return;
+        case Action::panels:
+            state.panels_hidden = !state.panels_hidden;
+            return;
+        case Action::help:
+            state.help_shown = !state.help_shown;
+            return;
     }
 }
 
@@ -198,8 +251,10 @@ void move_element(ViewerState& state, std::size_t element, std::size_t to) {
     if (selected == element) {
         selected = to;
     } else if (selected) {
-        if (element < *selected && *selected <= to) --*selected;
-        else if (to <= *selected && *selected < element) ++*selected;
+        if (element < *selected && *selected <= to)
+            --*selected;
+        else if (to <= *selected && *selected < element)
+            ++*selected;
     }
     document.edit("Move " + names_of(state)[element] + (to < element ? " up" : " down"),
                   with_element_moved(document.scene(), element, to), selected);

@@ -12,10 +12,29 @@
 namespace ivory {
 
 enum class Action : std::uint8_t {
-    start_anew, open, save, save_as, screenshot, quit,
-    undo, redo, remove, duplicate, hide,
-    frame_all, focus, front, back, right, left, top, bottom,
-    skeleton, theme, panels, help,
+    start_anew,
+    open,
+    save,
+    save_as,
+    screenshot,
+    quit,
+    undo,
+    redo,
+    remove,
+    duplicate,
+    hide,
+    frame_all,
+    focus,
+    front,
+    back,
+    right,
+    left,
+    top,
+    bottom,
+    skeleton,
+    theme,
+    panels,
+    help,
 };
 
 struct Shortcut {

@@ -47,8 +47,10 @@ void draw_question(ViewerState& state) {
     ImGui::EndPopup();
     if (!memory.question || !(save || discard || cancel)) return;
     Pending pending = *std::exchange(memory.question, std::nullopt);
-    if (save) save_or_ask(state, std::move(pending));
-    else if (discard) perform(state, pending);
+    if (save)
+        save_or_ask(state, std::move(pending));
+    else if (discard)
+        perform(state, pending);
 }
 
 }  // namespace

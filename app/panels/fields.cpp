@@ -28,13 +28,9 @@ constexpr double fine = 0.1;           // of the way, with Shift
 constexpr float tooltip_delay = 0.5f;  // seconds
 constexpr double label_width = 84;     // pixels at scale 1
 
-bool escape_pressed() {
-    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
-}
+bool escape_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false); }
 
-bool item_is_disabled() {
-    return (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0;
-}
+bool item_is_disabled() { return (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0; }
 
 // Text fields for std::string, which grows as is typed.
 int grow(ImGuiInputTextCallbackData* data) {
@@ -74,8 +70,9 @@ double linear_of(float srgb) {
 bool has_fault(const Scene& scene, std::optional<std::size_t> selected) {
     if (!(scene.threshold > 0 && std::isfinite(scene.threshold))) return true;
     if (selected && find_fault(scene.elements[*selected])) return true;
-    return scene.lights && std::any_of(scene.lights->begin(), scene.lights->end(),
-                                       [](const Light& light) { return find_fault(light).has_value(); });
+    return scene.lights &&
+           std::any_of(scene.lights->begin(), scene.lights->end(),
+                       [](const Light& light) { return find_fault(light).has_value(); });
 }
 
 void open_typing(ViewerState& state, const NumberField& field) {
@@ -89,7 +86,8 @@ void take_typed(ViewerState& state, const NumberField& field,
     if (typed.text == typed.before) return;
     const auto value = parse_number(typed.text, field.value);
     if (!value) {
-        state.say_error(in_quotes(typed.text) + " is not a number; " + number_text(field.value) + " stays");
+        state.say_error(in_quotes(typed.text) + " is not a number; " + number_text(field.value) +
+                        " stays");
         return;
     }
     edit_scene(state, field.what, [&](Scene& scene) { set(scene, *value); });
@@ -150,8 +148,9 @@ void dragged_number(ViewerState& state, const NumberField& field, float width,
     }
 
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImVec4& background =
-        active ? colors.field_active : hovered ? colors.field_hovered : colors.field;
+    const ImVec4& background = active    ? colors.field_active
+                               : hovered ? colors.field_hovered
+                                         : colors.field;
     const float alpha = item_is_disabled() ? ImGui::GetStyle().DisabledAlpha : 1;
     const float rounding = ImGui::GetStyle().FrameRounding;
     list.AddRectFilled(lo, hi, packed(background, alpha), rounding);
@@ -178,7 +177,8 @@ std::optional<double> parse_number(const std::string& typed, double value) {
     while (!text.empty() && is_space(text.back())) text.pop_back();
     while (!text.empty() && is_space(text.front())) text.erase(0, 1);
     char change = 0;
-    if (text.size() > 2 && text[1] == '=' && std::string_view("+-*/").find(text[0]) != std::string_view::npos) {
+    if (text.size() > 2 && text[1] == '=' &&
+        std::string_view("+-*/").find(text[0]) != std::string_view::npos) {
         change = text[0];
         text.erase(0, 2);
         while (!text.empty() && is_space(text.front())) text.erase(0, 1);
@@ -192,11 +192,20 @@ std::optional<double> parse_number(const std::string& typed, double value) {
     const auto [rest, error] = std::from_chars(text.data(), end, number);
     if (text.empty() || error != std::errc() || rest != end) return std::nullopt;
     switch (change) {
-        case '+': number = value + number; break;
-        case '-': number = value - number; break;
-        case '*': number = value * number; break;
-        case '/': number = value / number; break;
-        default: break;
+        case '+':
+            number = value + number;
+            break;
+        case '-':
+            number = value - number;
+            break;
+        case '*':
+            number = value * number;
+            break;
+        case '/':
+            number = value / number;
+            break;
+        default:
+            break;
     }
     if (!std::isfinite(number)) return std::nullopt;
     return number;
@@ -267,9 +276,10 @@ void number_field(ViewerState& state, const NumberField& field, float width,
     const bool typing = memory.number && memory.number->id == field.id;
     const ImVec2 lo = ImGui::GetCursorScreenPos();
     const ImVec2 hi{lo.x + width, lo.y + ImGui::GetFrameHeight()};
-    const bool ctrl_clicked = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl &&
-                              ImGui::IsMouseHoveringRect(lo, hi) &&
-                              ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+    const bool ctrl_clicked =
+        ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl &&
+        ImGui::IsMouseHoveringRect(lo, hi) &&
+        ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (!typing && enabled && (ctrl_clicked || memory.type_next)) {
         open_typing(state, field);
         memory.type_next = false;
@@ -291,8 +301,8 @@ void vector_fields(ViewerState& state, const std::string& id, const std::string&
         const auto k = static_cast<std::size_t>(axis);
         if (axis > 0) ImGui::SameLine(0, spacing);
         const float width = axis < 2 ? third : field_width();  // the last takes what rounding left
-        const NumberField field{.id = id + "." + "xyz"[k], .what = what, .value = value[k], .step = step,
-                                .axis = axis};
+        const NumberField field{
+            .id = id + "." + "xyz"[k], .what = what, .value = value[k], .step = step, .axis = axis};
         number_field(state, field, width, [&](Scene& scene, double number) {
             Vec3d changed = value;
             changed[k] = number;
@@ -321,11 +331,11 @@ void color_field(ViewerState& state, const std::string& id, const std::string& w
     if (ImGui::BeginPopup("picker")) {
         const float picker_width = px(state, 230);
         ImGui::SetNextItemWidth(picker_width);
-        const bool changed = ImGui::ColorPicker3(
-            "##picker", srgb.data(),
-            ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoLabel |
-                ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_DisplayHex |
-                ImGuiColorEditFlags_PickerHueBar);
+        const bool changed =
+            ImGui::ColorPicker3("##picker", srgb.data(),
+                                ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoLabel |
+                                    ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_DisplayHex |
+                                    ImGuiColorEditFlags_PickerHueBar);
         if (ImGui::IsItemActivated()) begin_field_drag(state, id, what);
         if (changed) {
             const Color chosen{linear_of(srgb[0]), linear_of(srgb[1]), linear_of(srgb[2])};
@@ -346,8 +356,13 @@ void color_field(ViewerState& state, const std::string& id, const std::string& w
             } else {
                 ImGui::SameLine(0, spacing);
             }
-            const NumberField field{.id = id + "." + "rgb"[k], .what = what, .value = value[k],
-                                    .step = 0.001, .least = 0, .greatest = 1, .axis = part};
+            const NumberField field{.id = id + "." + "rgb"[k],
+                                    .what = what,
+                                    .value = value[k],
+                                    .step = 0.001,
+                                    .least = 0,
+                                    .greatest = 1,
+                                    .axis = part};
             number_field(state, field, number_width, [&](Scene& scene, double number) {
                 Color chosen = value;
                 chosen[k] = number;
@@ -390,8 +405,8 @@ bool toggle(ViewerState& state, const std::string& id, const char* text, bool on
     return clicked;
 }
 
-bool icon_button(ViewerState& state, const std::string& id, Icon icon, const char* hint, bool enabled,
-                 bool on) {
+bool icon_button(ViewerState& state, const std::string& id, Icon icon, const char* hint,
+                 bool enabled, bool on) {
     const Palette& colors = palette(state.theme);
     ImGui::BeginDisabled(!enabled);
     ImGui::PushID(id.c_str());
@@ -490,9 +505,7 @@ void label(const ViewerState& state, const char* text) {
     ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + px(state, label_width));
 }
 
-float field_width() {
-    return std::max(1.0f, std::floor(ImGui::GetContentRegionAvail().x));
-}
+float field_width() { return std::max(1.0f, std::floor(ImGui::GetContentRegionAvail().x)); }
 
 const std::vector<std::string>& names_of(ViewerState& state) {
     PanelMemory& memory = state.panels;

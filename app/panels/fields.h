@@ -1,5 +1,6 @@
 // The controls that the panels are made of. Each records itself in state.widgets, changes the scene
-// through the document, a drag as one entry of its history, and draws itself in the theme's colours.
+// through the document, a drag as one entry of its history, and draws itself in the theme's
+// colours.
 #pragma once
 
 #include <functional>
@@ -23,19 +24,21 @@ struct NumberField {
     std::optional<int> axis = std::nullopt;  // marked in its colour
 };
 
-// A field to drag sideways (Shift: fine), or to type into after a click, Ctrl+click or Tab: what is typed
-// becomes exactly that double. "+=1", "-=", "*=", "/=" change the number that stands. What no scene may
-// hold is refused with a message. Escape restores.
+// A field to drag sideways (Shift: fine), or to type into after a click, Ctrl+click or Tab: what is
+// typed becomes exactly that double. "+=1", "-=", "*=", "/=" change the number that stands. What no
+// scene may hold is refused with a message. Escape restores.
 void number_field(ViewerState& state, const NumberField& field, float width,
                   const std::function<void(Scene&, double)>& set);
 
 // Three of them, ID.x, ID.y and ID.z, over the rest of the line.
-void vector_fields(ViewerState& state, const std::string& id, const std::string& what, const Vec3d& value,
-                   double step, const std::function<void(Scene&, const Vec3d&)>& set);
+void vector_fields(ViewerState& state, const std::string& id, const std::string& what,
+                   const Vec3d& value, double step,
+                   const std::function<void(Scene&, const Vec3d&)>& set);
 
 // A swatch; a click opens a picker of sRGB and the linear numbers ID.r, ID.g and ID.b.
-void color_field(ViewerState& state, const std::string& id, const std::string& what, const Color& value,
-                 float width, const std::function<void(Scene&, const Color&)>& set);
+void color_field(ViewerState& state, const std::string& id, const std::string& what,
+                 const Color& value, float width,
+                 const std::function<void(Scene&, const Color&)>& set);
 
 // True once, when a new text has been entered; `text` holds it. `hint` stands in an empty field.
 bool text_field(ViewerState& state, const std::string& id, std::string& text, float width,
@@ -53,8 +56,8 @@ bool text_button(ViewerState& state, const std::string& id, const char* label, f
 // The last item's, shown when the pointer rests on it.
 void tooltip(const char* text);
 
-// A dialog in the middle of the window, over everything; where it is drawn, ImGui::EndPopup follows. A
-// size of 0 fits the contents.
+// A dialog in the middle of the window, over everything; where it is drawn, ImGui::EndPopup
+// follows. A size of 0 fits the contents.
 bool begin_dialog(const ViewerState& state, const char* name, float width = 0, float height = 0);
 
 // A heading with space above it, unless it is the first of its panel.
@@ -68,9 +71,10 @@ void label(const ViewerState& state, const char* text);
     return static_cast<float>(pixels * state.scale);
 }
 
-// Changes a copy of the scene and makes it an entry of the history, unless it has a fault: then that is
-// the message.
-void edit_scene(ViewerState& state, const std::string& what, const std::function<void(Scene&)>& change);
+// Changes a copy of the scene and makes it an entry of the history, unless it has a fault: then
+// that is the message.
+void edit_scene(ViewerState& state, const std::string& what,
+                const std::function<void(Scene&)>& change);
 
 // A power of ten: near a hundredth of |value|, for a drag that begins there.
 [[nodiscard]] double step_for(double value);
@@ -82,8 +86,8 @@ void edit_scene(ViewerState& state, const std::string& what, const std::function
 void begin_field_drag(ViewerState& state, const std::string& id, const std::string& what);
 void drag_field(ViewerState& state, const std::function<void(Scene&)>& change);
 void end_field_drag(ViewerState& state);
-// At the end of the panels: a control that vanished while it was dragged or typed into leaves nothing
-// behind; Escape ends a drag as if it had never begun.
+// At the end of the panels: a control that vanished while it was dragged or typed into leaves
+// nothing behind; Escape ends a drag as if it had never begun.
 void end_lost_edits(ViewerState& state);
 
 // element_names of the document's scene, kept from frame to frame.

@@ -22,9 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* browser_id = "Files";
 constexpr const char* extension = ".ivory.json";
 
-bool is_scene_name(const std::string& name) {
-    return name.ends_with(".json");
-}
+bool is_scene_name(const std::string& name) { return name.ends_with(".json"); }
 
 // Folders and scene files, without hidden ones, by name.
 void read_folder(FileBrowser& browser, const fs::path& folder) {
@@ -60,10 +58,11 @@ void begin(ViewerState& state, FileBrowser::Mode mode) {
     browser.mode = mode;
     browser.just_opened = true;
     std::error_code ignored;
-    read_folder(browser, path && path->has_parent_path() ? path->parent_path()
-                                                         : fs::current_path(ignored));
+    read_folder(browser,
+                path && path->has_parent_path() ? path->parent_path() : fs::current_path(ignored));
     if (mode == FileBrowser::Mode::save)
-        browser.name = path && *path != "-" ? path->filename().string() : std::string("untitled") + extension;
+        browser.name =
+            path && *path != "-" ? path->filename().string() : std::string("untitled") + extension;
 }
 
 // What the name and the folder stand for, its ending added where it is to be saved.
@@ -103,10 +102,9 @@ bool draw_entry(ViewerState& state, const FileBrowser::Entry& entry) {
     const Palette& colors = palette(state.theme);
     const float height = ImGui::GetFrameHeight();
     ImGui::PushID(entry.name.c_str());
-    const bool clicked =
-        ImGui::Selectable("##entry", browser.name == entry.name,
-                          ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups,
-                          {0, height});
+    const bool clicked = ImGui::Selectable(
+        "##entry", browser.name == entry.name,
+        ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups, {0, height});
     state.widgets.add("browser.entry." + entry.name, WidgetKind::row);
     const ImVec2 lo = ImGui::GetItemRectMin();
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -130,7 +128,8 @@ bool draw_entries(ViewerState& state, float height) {
                       ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PopStyleVar();
     bool double_clicked = false;
-    for (const FileBrowser::Entry& entry : browser.entries) double_clicked |= draw_entry(state, entry);
+    for (const FileBrowser::Entry& entry : browser.entries)
+        double_clicked |= draw_entry(state, entry);
     if (browser.entries.empty()) ImGui::TextDisabled("no scenes and no folders here");
     ImGui::EndChild();
     ImGui::PopStyleColor();
@@ -152,8 +151,8 @@ void draw_contents(ViewerState& state) {
     if (text_field(state, "browser.path", browser.folder_text, field_width(), "folder"))
         read_folder(browser, browser.folder_text);
 
-    const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing() +
-                        px(state, 8);
+    const float below = 2 * ImGui::GetFrameHeightWithSpacing() +
+                        ImGui::GetTextLineHeightWithSpacing() + px(state, 8);
     bool done = draw_entries(state, ImGui::GetContentRegionAvail().y - below);
 
     text_field(state, "browser.name", browser.name, field_width(), "file name",
@@ -161,7 +160,8 @@ void draw_contents(ViewerState& state) {
     // Who went on typing saves with Enter; who clicked into a field first leaves it with Enter.
     if (ImGui::IsItemClicked()) browser.name_clicked = true;
     const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
-    done |= enter && was_typed != "browser.path" && !(was_typed == "browser.name" && browser.name_clicked);
+    done |= enter && was_typed != "browser.path" &&
+            !(was_typed == "browser.name" && browser.name_clicked);
     if (enter) browser.name_clicked = false;
     std::error_code ignored;
     const bool replaces = saving && fs::is_regular_file(chosen_path(browser), ignored);
@@ -180,17 +180,18 @@ void draw_contents(ViewerState& state) {
                         (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
                          state.panels.text.id.empty());
     ImGui::SameLine();
-    done |= text_button(state, "browser.ok", replaces ? "Replace" : saving ? "Save" : "Open", button,
-                        !browser.name.empty(), true);
+    done |= text_button(state, "browser.ok",
+                        replaces ? "Replace"
+                        : saving ? "Save"
+                                 : "Open",
+                        button, !browser.name.empty(), true);
     browser.just_opened = false;
     if (cancel || (done && accept(state))) browser.mode = FileBrowser::Mode::closed;
 }
 
 }  // namespace
 
-void browse_to_open(ViewerState& state) {
-    begin(state, FileBrowser::Mode::open);
-}
+void browse_to_open(ViewerState& state) { begin(state, FileBrowser::Mode::open); }
 
 void browse_to_save(ViewerState& state, std::optional<Pending> after) {
     begin(state, FileBrowser::Mode::save);
@@ -199,7 +200,8 @@ void browse_to_save(ViewerState& state, std::optional<Pending> after) {
 
 void draw_file_browser(ViewerState& state) {
     FileBrowser& browser = state.panels.browser;
-    if (browser.mode != FileBrowser::Mode::closed && browser.just_opened && !ImGui::IsPopupOpen(browser_id))
+    if (browser.mode != FileBrowser::Mode::closed && browser.just_opened &&
+        !ImGui::IsPopupOpen(browser_id))
         ImGui::OpenPopup(browser_id);
     if (!begin_dialog(state, browser_id, px(state, 640), px(state, 480))) return;
     if (browser.mode != FileBrowser::Mode::closed) draw_contents(state);

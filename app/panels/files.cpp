@@ -20,6 +20,7 @@ void take_document(ViewerState& state, Document document, const Camera& camera, 
     state.panels.text = {};
     state.panels.dragged = {};
     state.panels.row_shown.reset();
+    state.panels.ranged.reset();
     state.message = {};
 }
 
@@ -64,22 +65,22 @@ void request_open(ViewerState& state, const std::filesystem::path& path) {
     ask_or_perform(state, {Pending::Kind::open, path});
 }
 
-void request_new(ViewerState& state) {
-    ask_or_perform(state, {Pending::Kind::start_anew, {}});
-}
+void request_new(ViewerState& state) { ask_or_perform(state, {Pending::Kind::start_anew, {}}); }
 
-void request_quit(ViewerState& state) {
-    ask_or_perform(state, {Pending::Kind::quit, {}});
-}
+void request_quit(ViewerState& state) { ask_or_perform(state, {Pending::Kind::quit, {}}); }
 
 void perform(ViewerState& state, const Pending& pending) {
     try {
         switch (pending.kind) {
-            case Pending::Kind::open: open_scene(state, pending.path); break;
+            case Pending::Kind::open:
+                open_scene(state, pending.path);
+                break;
             case Pending::Kind::start_anew:
                 take_document(state, Document(), default_camera({}, 16.0 / 9), true);
                 break;
-            case Pending::Kind::quit: state.quit = true; break;
+            case Pending::Kind::quit:
+                state.quit = true;
+                break;
         }
     } catch (const Error& error) {
         state.say_error(error.what());

@@ -16,7 +16,8 @@ void browse_to_save(ViewerState& state, std::optional<Pending> after);
 // To the document's file, or to one that is asked for; then what was pending is done.
 void save_or_ask(ViewerState& state, std::optional<Pending> after);
 // Saves there and does what was pending; a failure is the message, and false.
-bool save_and_go_on(ViewerState& state, const std::filesystem::path& path, std::optional<Pending> after);
+bool save_and_go_on(ViewerState& state, const std::filesystem::path& path,
+                    std::optional<Pending> after);
 // Without a question.
 void perform(ViewerState& state, const Pending& pending);
 

@@ -44,10 +44,8 @@ constexpr std::array handles = {
     Binding{"Esc", "cancel the drag; select nothing"},
 };
 constexpr std::array editing = {
-    Binding{"Ctrl+Z", "undo"},
-    Binding{"Ctrl+Shift+Z / Ctrl+Y", "redo"},
-    Binding{"Ctrl+D", "duplicate"},
-    Binding{"Del", "delete"},
+    Binding{"Ctrl+Z", "undo"},      Binding{"Ctrl+Shift+Z / Ctrl+Y", "redo"},
+    Binding{"Ctrl+D", "duplicate"}, Binding{"Del", "delete"},
     Binding{"H", "hide or show"},
 };
 constexpr std::array numbers = {
@@ -56,25 +54,25 @@ constexpr std::array numbers = {
     Binding{"Tab", "type into the next"},
 };
 constexpr std::array files = {
-    Binding{"Ctrl+N", "new scene"},
-    Binding{"Ctrl+O", "open; or drop a file"},
-    Binding{"Ctrl+S", "save"},
-    Binding{"Ctrl+Shift+S", "save as"},
-    Binding{"F12", "screenshot"},
-    Binding{"Ctrl+Q", "quit"},
+    Binding{"Ctrl+N", "new scene"}, Binding{"Ctrl+O", "open; or drop a file"},
+    Binding{"Ctrl+S", "save"},      Binding{"Ctrl+Shift+S", "save as"},
+    Binding{"F12", "screenshot"},   Binding{"Ctrl+Q", "quit"},
 };
 constexpr std::array window = {
     Binding{"Tab", "hide or show the panels"},
     Binding{"S", "hide or show the skeleton"},
     Binding{"?", "this overview"},
 };
-constexpr std::array<Group, 3> left_groups = {{{"Looking", looking}, {"Numbers", numbers}, {"Window", window}}};
-constexpr std::array<Group, 3> right_groups = {{{"Handles", handles}, {"Editing", editing}, {"Files", files}}};
+constexpr std::array<Group, 3> left_groups = {
+    {{"Looking", looking}, {"Numbers", numbers}, {"Window", window}}};
+constexpr std::array<Group, 3> right_groups = {
+    {{"Handles", handles}, {"Editing", editing}, {"Files", files}}};
 
 constexpr double keys_width = 228, column_width = 440, gap = 36;  // pixels at scale 1
 
 // A key as a cap, other words as they are; returns the x after it.
-float draw_word(const ViewerState& state, ImDrawList& list, ImVec2 at, std::string_view word, bool cap) {
+float draw_word(const ViewerState& state, ImDrawList& list, ImVec2 at, std::string_view word,
+                bool cap) {
     const Palette& colors = palette(state.theme);
     const char* const begin = word.data();
     const char* const end = word.data() + word.size();
@@ -84,7 +82,8 @@ float draw_word(const ViewerState& state, ImDrawList& list, ImVec2 at, std::stri
         return at.x + size.x;
     }
     const float pad = px(state, 6);
-    list.AddRectFilled({at.x, at.y - px(state, 2)}, {at.x + size.x + 2 * pad, at.y + size.y + px(state, 2)},
+    list.AddRectFilled({at.x, at.y - px(state, 2)},
+                       {at.x + size.x + 2 * pad, at.y + size.y + px(state, 2)},
                        packed(colors.field_hovered), px(state, 4));
     list.AddText({at.x + pad, at.y}, packed(colors.text), begin, end);
     return at.x + size.x + 2 * pad;
@@ -98,7 +97,8 @@ void draw_keys(const ViewerState& state, std::string_view keys) {
         at.x = draw_word(state, list, at, keys.substr(0, joint), true);
         if (joint == std::string_view::npos) break;
         const bool plus = keys[joint] == '+';
-        at.x = draw_word(state, list, {at.x + px(state, 4), at.y}, plus ? "+" : "/", false) + px(state, 4);
+        at.x = draw_word(state, list, {at.x + px(state, 4), at.y}, plus ? "+" : "/", false) +
+               px(state, 4);
         keys.remove_prefix(joint + (plus ? 1 : 3));
     }
 }
@@ -124,7 +124,8 @@ void draw_group(const ViewerState& state, const Group& group) {
 
 void draw_help(ViewerState& state) {
     if (!state.help_shown) return;
-    const auto width = static_cast<float>(state.window.width), height = static_cast<float>(state.window.height);
+    const auto width = static_cast<float>(state.window.width),
+               height = static_cast<float>(state.window.height);
     const float pad = px(state, 28);
     ImGui::SetNextWindowPos({std::floor(0.5f * width), std::floor(0.5f * height)}, ImGuiCond_Always,
                             {0.5f, 0.5f});
@@ -153,7 +154,8 @@ void draw_help(ViewerState& state) {
     ImGui::BeginGroup();
     for (const Group& group : right_groups) draw_group(state, group);
     ImGui::EndGroup();
-    const bool clicked_outside = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsWindowAppearing() &&
+    const bool clicked_outside = ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
+                                 !ImGui::IsWindowAppearing() &&
                                  !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
     ImGui::End();
     if (clicked_outside) state.help_shown = false;

@@ -14,10 +14,18 @@ constexpr float pi = 3.14159265f;
 class Sketch {
   public:
     Sketch(ImDrawList& list, ImVec2 middle, float side, ImU32 color)
-        : list_(list), middle_(middle), half_(0.5f * side), color_(color), width_(std::max(1.0f, side / 11)) {}
+        : list_(list),
+          middle_(middle),
+          half_(0.5f * side),
+          color_(color),
+          width_(std::max(1.0f, side / 11)) {}
 
-    void line(float x0, float y0, float x1, float y1) { list_.AddLine(at(x0, y0), at(x1, y1), color_, width_); }
-    void circle(float x, float y, float r) { list_.AddCircle(at(x, y), r * half_, color_, 0, width_); }
+    void line(float x0, float y0, float x1, float y1) {
+        list_.AddLine(at(x0, y0), at(x1, y1), color_, width_);
+    }
+    void circle(float x, float y, float r) {
+        list_.AddCircle(at(x, y), r * half_, color_, 0, width_);
+    }
     void disc(float x, float y, float r) { list_.AddCircleFilled(at(x, y), r * half_, color_); }
     void rect(float x0, float y0, float x1, float y1) {
         list_.AddRect(at(x0, y0), at(x1, y1), color_, 0.18f * half_, 0, width_);
@@ -88,13 +96,17 @@ void turn_back(Sketch& s, float side) {
 void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 color) {
     Sketch s(list, middle, side, color);
     switch (icon) {
-        case Icon::point: s.disc(0, 0, 0.42f); return;
+        case Icon::point:
+            s.disc(0, 0, 0.42f);
+            return;
         case Icon::segment:
             s.line(-0.65f, 0.5f, 0.65f, -0.5f);
             s.disc(-0.68f, 0.52f, 0.26f);
             s.disc(0.68f, -0.52f, 0.26f);
             return;
-        case Icon::circle: s.circle(0, 0, 0.75f); return;
+        case Icon::circle:
+            s.circle(0, 0, 0.75f);
+            return;
         case Icon::eye:
             s.lids();
             s.disc(0, 0, 0.3f);
@@ -127,8 +139,12 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 col
             s.line(0, 0.75f, -0.5f, 0.2f);
             s.line(0, 0.75f, 0.5f, 0.2f);
             return;
-        case Icon::undo: turn_back(s, 1); return;
-        case Icon::redo: turn_back(s, -1); return;
+        case Icon::undo:
+            turn_back(s, 1);
+            return;
+        case Icon::redo:
+            turn_back(s, -1);
+            return;
         case Icon::frame:
             for (const float x : {-1.0f, 1.0f})
                 for (const float y : {-1.0f, 1.0f}) {

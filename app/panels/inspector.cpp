@@ -19,15 +19,17 @@ namespace {
 
 // One pixel of a field's drag is about one pixel of the picture.
 double step_in_scene(const ViewerState& state) {
-    const double length = state.projection().length_of_pixel(state.view.camera.target) * state.scale;
+    const double length =
+        state.projection().length_of_pixel(state.view.camera.target) * state.scale;
     const double exponent = std::round(std::log10(length));
     return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
 }
 
 // A field of the selected element's skeleton.
 template <class Shape>
-void skeleton_vector(ViewerState& state, const char* name, const char* text, const std::string& what,
-                     std::size_t element, Vec3d Shape::*member, double step) {
+void skeleton_vector(ViewerState& state, const char* name, const char* text,
+                     const std::string& what, std::size_t element, Vec3d Shape::*member,
+                     double step) {
     label(state, text);
     const Vec3d value = std::get<Shape>(state.document.scene().elements[element].skeleton).*member;
     vector_fields(state, std::string("element.") + name, what, value, step,
@@ -43,15 +45,22 @@ void draw_skeleton(ViewerState& state, std::size_t element, const std::string& n
         skeleton_vector(state, "position", "Position", "Move " + name, element,
                         &PointSkeleton::position, step);
     } else if (std::holds_alternative<SegmentSkeleton>(skeleton)) {
-        skeleton_vector(state, "a", "End a", "Move end a of " + name, element, &SegmentSkeleton::a, step);
-        skeleton_vector(state, "b", "End b", "Move end b of " + name, element, &SegmentSkeleton::b, step);
+        skeleton_vector(state, "a", "End a", "Move end a of " + name, element, &SegmentSkeleton::a,
+                        step);
+        skeleton_vector(state, "b", "End b", "Move end b of " + name, element, &SegmentSkeleton::b,
+                        step);
     } else if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
-        skeleton_vector(state, "center", "Center", "Move " + name, element, &CircleSkeleton::center, step);
-        skeleton_vector(state, "normal", "Normal", "Tilt " + name, element, &CircleSkeleton::normal, 0.01);
+        skeleton_vector(state, "center", "Center", "Move " + name, element, &CircleSkeleton::center,
+                        step);
+        skeleton_vector(state, "normal", "Normal", "Tilt " + name, element, &CircleSkeleton::normal,
+                        0.01);
         label(state, "Radius");
         number_field(state,
-                     {.id = "element.radius", .what = "Change radius of " + name,
-                      .value = circle->radius, .step = step, .least = 0},
+                     {.id = "element.radius",
+                      .what = "Change radius of " + name,
+                      .value = circle->radius,
+                      .step = step,
+                      .least = 0},
                      field_width(), [=](Scene& scene, double radius) {
                          std::get<CircleSkeleton>(scene.elements[element].skeleton).radius = radius;
                      });
@@ -121,26 +130,33 @@ void draw_element(ViewerState& state, std::size_t element) {
     ImGui::PopID();
 
     label(state, "Color");
-    const float toggle_width = ImGui::GetFrameHeight() + px(state, 6) + ImGui::CalcTextSize("Visible").x;
+    const float toggle_width =
+        ImGui::GetFrameHeight() + px(state, 6) + ImGui::CalcTextSize("Visible").x;
     color_field(state, "element.color", "Change color of " + name, now.color,
-                field_width() - toggle_width - px(state, 12), [=](Scene& scene, const Color& color) {
-                    scene.elements[element].color = color;
-                });
+                field_width() - toggle_width - px(state, 12),
+                [=](Scene& scene, const Color& color) { scene.elements[element].color = color; });
     ImGui::SameLine(0, px(state, 12));
-    if (toggle(state, "element.visible", "Visible", now.visible)) set_visible(state, element, !now.visible);
+    if (toggle(state, "element.visible", "Visible", now.visible))
+        set_visible(state, element, !now.visible);
 
     draw_kernel(state, element, name);
     label(state, "Strength");
     number_field(state,
-                 {.id = "element.strength", .what = "Change strength of " + name,
-                  .value = now.strength, .step = 0.01},
-                 field_width(),
-                 [=](Scene& scene, double strength) { scene.elements[element].strength = strength; });
+                 {.id = "element.strength",
+                  .what = "Change strength of " + name,
+                  .value = now.strength,
+                  .step = 0.01},
+                 field_width(), [=](Scene& scene, double strength) {
+                     scene.elements[element].strength = strength;
+                 });
     label(state, "Width");
     const double step = step_for(now.width);
     number_field(state,
-                 {.id = "element.width", .what = "Change width of " + name, .value = now.width,
-                  .step = step, .least = step},
+                 {.id = "element.width",
+                  .what = "Change width of " + name,
+                  .value = now.width,
+                  .step = step,
+                  .least = step},
                  field_width(),
                  [=](Scene& scene, double width) { scene.elements[element].width = width; });
     draw_skeleton(state, element, name);
@@ -159,7 +175,8 @@ void draw_inspector(ViewerState& state) {
     }
     const Element& element = state.document.scene().elements[*selected];
     const std::string shape = shape_word(element.skeleton);
-    section(state, (std::string(1, static_cast<char>(shape[0] - 'a' + 'A')) + shape.substr(1)).c_str());
+    section(state,
+            (std::string(1, static_cast<char>(shape[0] - 'a' + 'A')) + shape.substr(1)).c_str());
     draw_element(state, *selected);
 }
 

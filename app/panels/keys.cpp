@@ -16,9 +16,12 @@ bool same(const Shortcut& shortcut, const KeyPress& press) {
 
 void press(ViewerState& state, const KeyPress& press) {
     if (press.key == Key::escape) {
-        if (state.help_shown) state.help_shown = false;
-        else if (state.message.error) state.message = {};
-        else state.document.select(std::nullopt);
+        if (state.help_shown)
+            state.help_shown = false;
+        else if (state.message.error)
+            state.message = {};
+        else
+            state.document.select(std::nullopt);
         return;
     }
     const Shortcut second_redo{Key::y, {.control = true}};

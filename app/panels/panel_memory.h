@@ -15,8 +15,8 @@ namespace ivory {
 
 // The number that is being typed.
 struct TypedNumber {
-    std::string id;      // of its control
-    std::string text;    // as it stands in the field
+    std::string id;    // of its control
+    std::string text;  // as it stands in the field
     std::string before;
     int frames = 0;  // since it was opened
     bool focused = false;
@@ -53,7 +53,7 @@ struct FileBrowser {
     std::filesystem::path folder;
     std::vector<Entry> entries;  // folders first
     std::string folder_text, name;
-    std::string fault;             // one line; empty: none
+    std::string fault;  // one line; empty: none
     bool just_opened = false, name_clicked = false;
     std::optional<Pending> after;  // when it has been saved
 };

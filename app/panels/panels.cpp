@@ -15,9 +15,9 @@ namespace ivory {
 namespace {
 
 constexpr int scene_panel_width = 236, inspector_width = 300;  // pixels at scale 1
-constexpr int least_height = 120;                               // of a panel
-// In a narrow window the picture keeps that share of it: first the panels become narrower, then the one
-// on the left gives way, then the other.
+constexpr int least_height = 120;                              // of a panel
+// In a narrow window the picture keeps that share of it: first the panels become narrower, then the
+// one on the left gives way, then the other.
 constexpr double least_picture = 0.34, narrowest_panel = 0.85;
 
 struct Layout {
@@ -37,10 +37,12 @@ Layout lay_out(const ViewerState& state) {
     const int top = std::min(top_bar_height(state), window.height);
     const int bottom = std::min(status_bar_height(state), window.height - top);
     const int height = std::max(window.height - top - bottom, 0);
-    const double room = height < least_height * state.scale ? 0 : (1 - least_picture) * window.width;
+    const double room =
+        height < least_height * state.scale ? 0 : (1 - least_picture) * window.width;
     const auto share_of = [&](int width) { return std::min(1.0, room / (width * state.scale)); };
     int left = 0, right = 0;
-    if (const double share = share_of(scene_panel_width + inspector_width); share >= narrowest_panel) {
+    if (const double share = share_of(scene_panel_width + inspector_width);
+        share >= narrowest_panel) {
         left = static_cast<int>(scene_panel_width * state.scale * share);
         right = static_cast<int>(inspector_width * state.scale * share);
     } else if (const double alone = share_of(inspector_width); alone >= narrowest_panel) {
@@ -102,8 +104,11 @@ double next_frame_wanted(const ViewerState& state) {
     constexpr double caret = 0.2, rest = 0.1;  // seconds
     const ImGuiIO& io = ImGui::GetIO();
     double wanted = -1;
-    const auto within = [&](double seconds) { wanted = wanted < 0 ? seconds : std::min(wanted, seconds); };
-    if (!state.message.text.empty() && !state.message.error) within(std::max(state.message.seconds_left, rest));
+    const auto within = [&](double seconds) {
+        wanted = wanted < 0 ? seconds : std::min(wanted, seconds);
+    };
+    if (!state.message.text.empty() && !state.message.error)
+        within(std::max(state.message.seconds_left, rest));
     if (io.WantTextInput) within(caret);
     // a tooltip is about to come
     if (ImGui::IsAnyItemHovered() && GImGui->HoveredIdTimer < 1) within(rest);

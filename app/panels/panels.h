@@ -12,8 +12,8 @@ namespace ivory {
 void apply_theme(Theme theme, double scale);
 
 // Between ImGui::NewFrame and Render, once a frame: lays out the window, sets state.viewport (the
-// part that no panel covers, at least 1 x 1), draws every panel, dialog and message, and records every
-// control in state.widgets. With panels_hidden the viewport is the whole window.
+// part that no panel covers, at least 1 x 1), draws every panel, dialog and message, and records
+// every control in state.widgets. With panels_hidden the viewport is the whole window.
 void draw_panels(ViewerState& state);
 
 // The keys of the bindings table, for what no text field has taken. Before draw_panels.
@@ -29,7 +29,8 @@ void save_scene(ViewerState& state, const std::filesystem::path& path);
 // The window's close button and Ctrl+Q: state.quit, at once or after the question.
 void request_quit(ViewerState& state);
 
-// A frame is needed soon although nothing happens: a message fades, a caret blinks. Seconds, or < 0.
+// A frame is needed soon although nothing happens: a message fades, a caret blinks. Seconds, or <
+// 0.
 [[nodiscard]] double next_frame_wanted(const ViewerState& state);
 
 }  // namespace ivory

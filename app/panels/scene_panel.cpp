@@ -27,8 +27,8 @@ Icon shape_icon(const Skeleton& skeleton) {
 }
 
 // A button that adds: the shape's sign and its name.
-void add_button(ViewerState& state, const char* id, const char* label, Icon icon, ElementShape shape,
-                float width) {
+void add_button(ViewerState& state, const char* id, const char* label, Icon icon,
+                ElementShape shape, float width) {
     const Palette& colors = palette(state.theme);
     const bool clicked = text_button(state, id, "", width);
     const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
@@ -45,14 +45,14 @@ void add_button(ViewerState& state, const char* id, const char* label, Icon icon
 void draw_add_buttons(ViewerState& state) {
     const float spacing = px(state, 4);
     const float width = std::floor((field_width() - 2 * spacing) / 3);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(state, 4), ImGui::GetStyle().FramePadding.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        {px(state, 4), ImGui::GetStyle().FramePadding.y});
     add_button(state, "add.point", "Point", Icon::point, ElementShape::point, width - px(state, 8));
     ImGui::SameLine(0, spacing);
     add_button(state, "add.segment", "Segment", Icon::segment, ElementShape::segment,
                width + px(state, 16));
     ImGui::SameLine(0, spacing);
-    add_button(state, "add.circle", "Circle", Icon::circle, ElementShape::circle,
-               field_width());
+    add_button(state, "add.circle", "Circle", Icon::circle, ElementShape::circle, field_width());
     ImGui::PopStyleVar();
 }
 
@@ -63,8 +63,9 @@ void drag_and_drop(ViewerState& state, std::size_t row) {
         ImGui::EndDragDropSource();
     }
     if (ImGui::BeginDragDropTarget()) {
-        const ImGuiPayload* const payload = ImGui::AcceptDragDropPayload(
-            dragged_row, ImGuiDragDropFlags_AcceptNoDrawDefaultRect | ImGuiDragDropFlags_AcceptBeforeDelivery);
+        const ImGuiPayload* const payload =
+            ImGui::AcceptDragDropPayload(dragged_row, ImGuiDragDropFlags_AcceptNoDrawDefaultRect |
+                                                          ImGuiDragDropFlags_AcceptBeforeDelivery);
         if (payload != nullptr) {
             const std::size_t from = *static_cast<const std::size_t*>(payload->Data);
             const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
@@ -135,7 +136,8 @@ void draw_row(ViewerState& state, std::size_t row, float width) {
 void record_row(ViewerState& state, std::size_t row, ImVec2 at, float width, float height) {
     const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
     const std::string id = "row." + names_of(state)[row];
-    state.widgets.add(id, WidgetKind::row, {whole(at.x), whole(at.y), whole(width - height), whole(height)});
+    state.widgets.add(id, WidgetKind::row,
+                      {whole(at.x), whole(at.y), whole(width - height), whole(height)});
     state.widgets.add(id + ".visible", WidgetKind::toggle,
                       {whole(at.x + width - height), whole(at.y), whole(height), whole(height)},
                       state.document.scene().elements[row].visible);
@@ -176,7 +178,8 @@ void draw_rows(ViewerState& state, float list_height) {
     const std::size_t left =
         state.widgets.whole_lists ? std::min(count, state.document.scene().elements.size()) : 0;
     for (std::size_t row = 0; row < left; ++row)
-        record_row(state, row, {start.x, start.y + static_cast<float>(row) * height}, width, height);
+        record_row(state, row, {start.x, start.y + static_cast<float>(row) * height}, width,
+                   height);
     ImGui::PopStyleVar();
     ImGui::EndChild();
 }
@@ -193,7 +196,8 @@ void draw_row_buttons(ViewerState& state) {
         move_element(state, *selected, *selected + 1);
     const float side = ImGui::GetFrameHeight();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 2 * side - px(state, 2));
-    if (icon_button(state, "element.duplicate", Icon::copy, "Duplicate   Ctrl+D", selected.has_value()))
+    if (icon_button(state, "element.duplicate", Icon::copy, "Duplicate   Ctrl+D",
+                    selected.has_value()))
         run(state, Action::duplicate);
     ImGui::SameLine(0, px(state, 2));
     if (icon_button(state, "element.delete", Icon::trash, "Delete   Del", selected.has_value()))
@@ -208,7 +212,8 @@ void draw_scene_panel(ViewerState& state, const WindowRect& rect) {
     const std::size_t count = state.document.scene().elements.size();
     if (count > 0) {
         const std::string number = std::to_string(count);
-        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(number.c_str()).x);
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x -
+                        ImGui::CalcTextSize(number.c_str()).x);
         ImGui::TextDisabled("%s", number.c_str());
     }
     draw_add_buttons(state);

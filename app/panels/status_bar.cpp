@@ -56,7 +56,8 @@ void draw_progress(const ViewerState& state) {
     const float width = px(state, 90), height = px(state, 4);
     const float y = std::floor(at.y + 0.5f * (ImGui::GetFontSize() - height));
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled({at.x, y}, {at.x + width, y + height}, packed(colors.field_active), 0.5f * height);
+    list.AddRectFilled({at.x, y}, {at.x + width, y + height}, packed(colors.field_active),
+                       0.5f * height);
     const auto done = static_cast<float>(picture.final ? 1 : picture.progress);
     if (done > 0)
         list.AddRectFilled({at.x, y}, {at.x + std::max(width * done, height), y + height},
@@ -85,10 +86,12 @@ void draw_figures(const ViewerState& state) {
     figure(state, grouped(picture.hit), "hit");
     figure(state, grouped(picture.miss), "miss");
     figure(state, grouped(picture.unresolved), "unresolved");
-    tooltip("Pixels where the surface is proved, is proved not to be, and where neither could be proved.");
+    tooltip(
+        "Pixels where the surface is proved, is proved not to be, and where neither could be "
+        "proved.");
     figure(state, std::to_string(picture.threads), picture.threads == 1 ? "thread" : "threads");
-    const std::string size = std::to_string(state.viewport.width) + " \xC3\x97 " +
-                             std::to_string(state.viewport.height);
+    const std::string size =
+        std::to_string(state.viewport.width) + " \xC3\x97 " + std::to_string(state.viewport.height);
     const float x = ImGui::GetWindowWidth() - px(state, 14) - ImGui::CalcTextSize(size.c_str()).x;
     if (x > ImGui::GetCursorPosX()) {
         ImGui::SameLine(std::floor(x));
@@ -126,7 +129,8 @@ void draw_status_bar(ViewerState& state, const WindowRect& rect) {
     const float pad = std::floor(0.5f * (static_cast<float>(rect.height) - ImGui::GetFontSize()));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(state, 14), pad});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, state.message.error ? colors.error_bar : colors.bar);
-    begin_panel("status bar", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    begin_panel("status bar", rect,
+                ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
     if (state.message.text.empty()) {

@@ -19,8 +19,8 @@ namespace ivory {
 
 namespace {
 
-// About the field's greatest value: that on the skeletons, of many elements on some of them. Beyond it
-// there is no surface to see. Never more than a millisecond or two.
+// About the field's greatest value: that on the skeletons, of many elements on some of them. Beyond
+// it there is no surface to see. Never more than a millisecond or two.
 double greatest_field(const Scene& scene) {
     constexpr std::size_t most_evaluations = 6'000, most_elements = 3'000;
     double greatest = 0;
@@ -28,13 +28,15 @@ double greatest_field(const Scene& scene) {
         if (element.visible) greatest = std::max(greatest, element.strength);
     if (scene.elements.size() > most_elements) return 2 * greatest;
     const Field field = compile(scene);
-    const std::size_t places = std::clamp<std::size_t>(most_evaluations / (field.size() + 1), 1, 64);
+    const std::size_t places =
+        std::clamp<std::size_t>(most_evaluations / (field.size() + 1), 1, 64);
     const std::size_t stride = field.size() / places + 1;
     for (std::size_t i = 0; i < field.size(); i += stride) {
         const bool long_one = field.shape[i] == Shape::segment;
         const Vec3d place = long_one ? 0.5 * field.a(i) + 0.5 * field.b(i) : field.a(i);
         greatest = std::max(greatest, sample(field, place).value + scene.threshold);
-        if (long_one) greatest = std::max(greatest, sample(field, field.a(i)).value + scene.threshold);
+        if (long_one)
+            greatest = std::max(greatest, sample(field, field.a(i)).value + scene.threshold);
     }
     return greatest;
 }
@@ -43,11 +45,18 @@ double greatest_field(const Scene& scene) {
 double most_threshold(ViewerState& state) {
     PanelMemory& memory = state.panels;
     const Document& document = state.document;
-    if (memory.ranged == document.scene_value() || document.dragging()) return memory.most_threshold;
-    const bool same_elements = memory.ranged && memory.ranged->elements == document.scene().elements;
+    if (memory.ranged == document.scene_value() || document.dragging())
+        return memory.most_threshold;
+    const bool same_elements =
+        memory.ranged && memory.ranged->elements == document.scene().elements;
+    const bool first = memory.ranged == nullptr;
     memory.ranged = document.scene_value();
     if (same_elements) return memory.most_threshold;
     const double greatest = std::max(greatest_field(*memory.ranged), 1e-3);
+    // it stays where it is while it serves: a slider should not change under the hand
+    const bool serves =
+        greatest <= memory.most_threshold && greatest >= 0.3 * memory.most_threshold;
+    if (!first && serves) return memory.most_threshold;
     const double power = std::pow(10.0, std::floor(std::log10(greatest)));
     memory.most_threshold = 10 * power;
     for (const double step : {5.0, 3.0, 2.0, 1.5, 1.2, 1.0})
@@ -84,9 +93,7 @@ struct Scale {
     }
 };
 
-void set_threshold(Scene& scene, double threshold) {
-    scene.threshold = threshold;
-}
+void set_threshold(Scene& scene, double threshold) { scene.threshold = threshold; }
 
 void draw_slider(ViewerState& state) {
     const Palette& colors = palette(state.theme);
@@ -114,18 +121,21 @@ void draw_slider(ViewerState& state) {
     const float y = std::floor(lo.y + 0.36f * height), half = px(state, 2);
     const auto at = [&](double share) { return left + static_cast<float>(share) * room; };
     const float knob_x = at(scale.share(state.document.scene().threshold));
-    list.AddRectFilled({left, y - half}, {left + room, y + half}, packed(colors.field_active), half);
+    list.AddRectFilled({left, y - half}, {left + room, y + half}, packed(colors.field_active),
+                       half);
     list.AddRectFilled({left, y - half}, {knob_x, y + half}, packed(colors.accent), half);
 
     std::vector<double> ticks{scale.value(0)};
     if (scale.is_log()) {
-        for (double tick = scale.most / 100; tick < 1.5 * scale.most; tick *= 10) ticks.push_back(tick);
+        for (double tick = scale.most / 100; tick < 1.5 * scale.most; tick *= 10)
+            ticks.push_back(tick);
     } else {
         ticks.insert(ticks.end(), {0.01, 0.1, scale.most});
     }
     for (const double tick : ticks) {
         const float x = std::floor(at(scale.share(tick)));
-        list.AddLine({x, y + px(state, 7)}, {x, y + px(state, 10)}, packed(colors.quiet), px(state, 1));
+        list.AddLine({x, y + px(state, 7)}, {x, y + px(state, 10)}, packed(colors.quiet),
+                     px(state, 1));
         const std::string text = number_text(tidy(tick, -6));
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
         const float text_x = std::clamp(x - 0.5f * size.x, lo.x, hi.x - size.x);
@@ -143,8 +153,11 @@ void draw_threshold(ViewerState& state) {
     const double step = step_for(threshold);
     label(state, "Threshold");
     number_field(state,
-                 {.id = "threshold", .what = "Change threshold", .value = threshold,
-                  .step = std::min(step, 0.01), .least = std::min(step, 0.01)},
+                 {.id = "threshold",
+                  .what = "Change threshold",
+                  .value = threshold,
+                  .step = std::min(step, 0.01),
+                  .least = std::min(step, 0.01)},
                  field_width(), set_threshold);
     draw_slider(state);
     const Scene& scene = state.document.scene();
@@ -152,8 +165,9 @@ void draw_threshold(ViewerState& state) {
                                            [](const Element& element) { return element.visible; });
     if (state.picture.surface_certainly_empty || none_visible) {
         ImGui::PushStyleColor(ImGuiCol_Text, colors.accent);
-        ImGui::TextWrapped("%s", none_visible ? "The surface is empty: no element is visible."
-                                              : "The surface is empty: the field stays below T everywhere.");
+        ImGui::TextWrapped("%s", none_visible
+                                     ? "The surface is empty: no element is visible."
+                                     : "The surface is empty: the field stays below T everywhere.");
         ImGui::PopStyleColor();
     }
 }
@@ -176,8 +190,11 @@ bool draw_light(ViewerState& state, const Light& light, std::size_t i) {
                 [=](Scene& scene, const Color& color) { lights_of(scene)[i].color = color; });
     ImGui::SameLine(0, spacing);
     number_field(state,
-                 {.id = id + ".intensity", .what = "Change intensity of " + name,
-                  .value = light.intensity, .step = 0.01, .least = 0},
+                 {.id = id + ".intensity",
+                  .what = "Change intensity of " + name,
+                  .value = light.intensity,
+                  .step = 0.01,
+                  .least = 0},
                  rest - swatch, [=](Scene& scene, double intensity) {
                      lights_of(scene)[i].intensity = intensity;
                  });
@@ -186,8 +203,9 @@ bool draw_light(ViewerState& state, const Light& light, std::size_t i) {
     const bool deleted = icon_button(state, id + ".delete", Icon::trash, "Delete this light");
 
     label(state, "Direction");
-    vector_fields(state, id + ".direction", "Turn " + name, light.direction, 0.01,
-                  [=](Scene& scene, const Vec3d& direction) { lights_of(scene)[i].direction = direction; });
+    vector_fields(
+        state, id + ".direction", "Turn " + name, light.direction, 0.01,
+        [=](Scene& scene, const Vec3d& direction) { lights_of(scene)[i].direction = direction; });
     label(state, "");
     if (toggle(state, id + ".attached", "Moves with the camera", light.attached_to_camera))
         edit_scene(state, "Attach " + name, [=](Scene& scene) {

@@ -9,14 +9,14 @@ namespace ivory {
 
 // sRGB with alpha. Text on `panel` and on `field` has a contrast of 7 or more, `quiet` text of 4.5.
 struct Palette {
-    ImVec4 bar, panel, popup;               // backgrounds
+    ImVec4 bar, panel, popup;  // backgrounds
     ImVec4 field, field_hovered, field_active;
-    ImVec4 line;                            // between panels and sections
-    ImVec4 text, quiet;                     // quiet: labels, hints
-    ImVec4 accent, accent_text;             // what is selected or on; text on it
+    ImVec4 line;                 // between panels and sections
+    ImVec4 text, quiet;          // quiet: labels, hints
+    ImVec4 accent, accent_text;  // what is selected or on; text on it
     ImVec4 selected_row, hovered_row;
     ImVec4 error_bar, error_text;
-    ImVec4 x, y, z;                         // marks of the axes
+    ImVec4 x, y, z;  // marks of the axes
 };
 
 [[nodiscard]] const Palette& palette(Theme theme);

@@ -45,7 +45,8 @@ void tool(ViewerState& state, const char* id, Icon icon, Action action) {
     const ActionInfo& about = info(action);
     std::string hint = label_of(state, action);
     if (*about.keys != '\0') hint += std::string("   ") + about.keys;
-    if (icon_button(state, id, icon, hint.c_str(), is_possible(state, action), is_on(state, action)))
+    if (icon_button(state, id, icon, hint.c_str(), is_possible(state, action),
+                    is_on(state, action)))
         run(state, action);
     ImGui::SameLine(0, px(state, 2));
 }
@@ -53,7 +54,8 @@ void tool(ViewerState& state, const char* id, Icon icon, Action action) {
 void view_tool(ViewerState& state, const char* id, const char* label, Action action) {
     const ActionInfo& about = info(action);
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0, 0, 0, 0));
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(state, 7), ImGui::GetStyle().FramePadding.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        {px(state, 7), ImGui::GetStyle().FramePadding.y});
     if (text_button(state, id, label)) run(state, action);
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
@@ -66,7 +68,8 @@ void divider(const ViewerState& state, float y) {
     ImGui::SetCursorPosY(y);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
-    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 0.15f * height}, {at.x, at.y + 0.85f * height},
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 0.15f * height},
+                                        {at.x, at.y + 0.85f * height},
                                         packed(palette(state.theme).line), px(state, 1));
     ImGui::Dummy({px(state, 1), height});
     ImGui::SameLine(0, px(state, 10));
@@ -118,7 +121,8 @@ void draw_top_bar(ViewerState& state) {
                         {px(state, 8), std::floor(0.5f * (room - ImGui::GetFontSize()))});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(state, 6), 0});
     begin_panel("top bar", {0, 0, state.window.width, height},
-                ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+                ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_NoScrollbar |
+                    ImGuiWindowFlags_NoScrollWithMouse);
     const bool drawn = ImGui::BeginMenuBar();
     ImGui::PopStyleVar(2);
     if (drawn) {
@@ -129,7 +133,8 @@ void draw_top_bar(ViewerState& state) {
         draw_tools(state, std::floor(0.5f * (room - ImGui::GetFrameHeight())));
         draw_file_name(state);
         const float bottom = room - 0.5f * px(state, 1);
-        ImGui::GetWindowDrawList()->AddLine({0, bottom}, {static_cast<float>(state.window.width), bottom},
+        ImGui::GetWindowDrawList()->AddLine({0, bottom},
+                                            {static_cast<float>(state.window.width), bottom},
                                             packed(colors.line), px(state, 1));
         ImGui::EndMenuBar();
     }

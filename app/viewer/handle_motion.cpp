@@ -13,19 +13,17 @@ namespace ivory {
 namespace {
 
 constexpr double shortest_arrow = 56, longest_arrow = 170;  // pixels at scale 1
-constexpr double rounding_pixels = 6;                       // at least, from one round number to the next
+constexpr double rounding_pixels = 6;  // at least, from one round number to the next
 
-double length(const Vec3d& v) {
-    return std::hypot(v.x, v.y, v.z);
-}
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
 
 bool in_picture(const Projection& view, const Vec3d& place) {
     const auto seen = view.project(place);
     return seen && WindowRect{0, 0, view.size().width, view.size().height}.contains(*seen);
 }
 
-// Unit, in the circle's plane and parallel to the screen; to the right, or to the left where only that
-// end is in the picture.
+// Unit, in the circle's plane and parallel to the screen; to the right, or to the left where only
+// that end is in the picture.
 Vec3d radius_direction(const Projection& view, const CircleSkeleton& circle) {
     const Vec3d across = cross(unit(circle.normal), view.back());
     // seen along the normal, all directions run across the line of sight
@@ -34,13 +32,14 @@ Vec3d radius_direction(const Projection& view, const CircleSkeleton& circle) {
     if (std::abs(rightward) > 1e-9 ? rightward < 0 : dot(direction, view.top()) < 0)
         direction = -direction;
     const Vec3d end = circle.radius * direction;
-    const bool turn = !in_picture(view, circle.center + end) && in_picture(view, circle.center - end);
+    const bool turn =
+        !in_picture(view, circle.center + end) && in_picture(view, circle.center - end);
     return turn ? -direction : direction;
 }
 
-// How far along the unit `direction` from `place` the pointer leads that is (dx, dy) from where `place` is
-// seen. Its line of sight is cut with the plane through the line that faces the viewer most: a pointer
-// that stays on the line as it is seen is met exactly.
+// How far along the unit `direction` from `place` the pointer leads that is (dx, dy) from where
+// `place` is seen. Its line of sight is cut with the plane through the line that faces the viewer
+// most: a pointer that stays on the line as it is seen is met exactly.
 std::optional<double> distance_along(const Projection& view, const Vec3d& place,
                                      const Vec3d& direction, double dx, double dy) {
     const double towards = dot(view.back(), direction);
@@ -90,9 +89,7 @@ Vec3d shifted(Vec3d place, const Vec3d& by) {
     return place;
 }
 
-Vec3d middle_of(const SegmentSkeleton& segment) {
-    return 0.5 * segment.a + 0.5 * segment.b;
-}
+Vec3d middle_of(const SegmentSkeleton& segment) { return 0.5 * segment.a + 0.5 * segment.b; }
 
 std::optional<Skeleton> moved_circle(const Projection& view, CircleSkeleton circle,
                                      const std::string& handle, const HandleMotion& motion,
@@ -123,8 +120,8 @@ std::optional<Skeleton> moved_circle(const Projection& view, CircleSkeleton circ
         if (!far) return std::nullopt;
         circle.radius = std::max(0.0, circle.radius + *far);
         if (motion.round)
-            circle.radius = tidy(
-                circle.radius, exponent_above(rounding_pixels * scale * view.length_of_pixel(place)));
+            circle.radius = tidy(circle.radius, exponent_above(rounding_pixels * scale *
+                                                               view.length_of_pixel(place)));
     }
     return circle;
 }

@@ -1,5 +1,5 @@
-// Where the handles of a skeleton stand in the scene, and what dragging one does to the skeleton. Pure
-// functions of view, skeleton and pixels.
+// Where the handles of a skeleton stand in the scene, and what dragging one does to the skeleton.
+// Pure functions of view, skeleton and pixels.
 #pragma once
 
 #include <optional>
@@ -19,13 +19,15 @@ struct Grip {
     Vec3d place;
 };
 
-// The k of a normal's handle at center + k normal: 1 unless that arrow would be too short to grab or too
-// long to reach on the screen. `scale` is that of the window.
-[[nodiscard]] double arrow_factor(const Projection& view, const CircleSkeleton& circle, double scale);
+// The k of a normal's handle at center + k normal: 1 unless that arrow would be too short to grab
+// or too long to reach on the screen. `scale` is that of the window.
+[[nodiscard]] double arrow_factor(const Projection& view, const CircleSkeleton& circle,
+                                  double scale);
 
 // The radius stands on the circle where it runs across the line of sight, so that
 // it is seen at full length.
-[[nodiscard]] std::vector<Grip> grips_of(const Projection& view, const Skeleton& skeleton, double scale);
+[[nodiscard]] std::vector<Grip> grips_of(const Projection& view, const Skeleton& skeleton,
+                                         double scale);
 
 struct HandleMotion {
     double dx = 0, dy = 0;    // pixels since the handle was grabbed
@@ -33,12 +35,12 @@ struct HandleMotion {
     bool round = false;       // to round coordinates, about ten pixels from one to the next
 };
 
-// The skeleton `start` with that handle moved. Free, the handle moves in the plane parallel to the screen
-// and is then seen exactly (dx, dy) further; along an axis, as near to that as the axis allows and with
-// the other coordinates kept bit for bit. A radius has no direction to lock and ends at 0.
-// Nothing where the pointer's line of sight does not meet the axis' plane.
+// The skeleton `start` with that handle moved. Free, the handle moves in the plane parallel to the
+// screen and is then seen exactly (dx, dy) further; along an axis, as near to that as the axis
+// allows and with the other coordinates kept bit for bit. A radius has no direction to lock and
+// ends at 0. Nothing where the pointer's line of sight does not meet the axis' plane.
 [[nodiscard]] std::optional<Skeleton> moved_by(const Projection& view, const Skeleton& start,
-                                               const std::string& handle, const HandleMotion& motion,
-                                               double scale);
+                                               const std::string& handle,
+                                               const HandleMotion& motion, double scale);
 
 }  // namespace ivory

@@ -21,17 +21,15 @@ constexpr double double_click_time = 0.4;  // seconds from press to press
 constexpr double skeleton_radius = 9;      // pixels at scale 1 from which a skeleton is clicked
 constexpr double fine = 0.1;               // of the pointer's way, with Shift
 
-double distance(WindowPoint a, WindowPoint b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
+double distance(WindowPoint a, WindowPoint b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 WindowPoint in_picture(const ViewerState& state, WindowPoint at) {
     return {at.x - state.viewport.x, at.y - state.viewport.y};
 }
 
 // Where a handle at `seen` can stand apart from those before it.
-WindowPoint free_place(const std::vector<Handle>& before, WindowPoint seen, const WindowRect& viewport,
-                       double scale) {
+WindowPoint free_place(const std::vector<Handle>& before, WindowPoint seen,
+                       const WindowRect& viewport, double scale) {
     const double apart = 2 * grab_radius * scale;
     const auto is_free = [&](WindowPoint at) {
         return viewport.contains(at) &&
@@ -184,12 +182,19 @@ void ViewportMouse::move(ViewerState& state, const Input& input) {
             set_camera(state, orbited(state.projection(), input.mouse.x - pressed_at_.x,
                                       input.mouse.y - pressed_at_.y));
             return;
-        case Does::orbit: set_camera(state, orbited(state.projection(), dx, dy)); return;
-        case Does::pan: set_camera(state, panned(state.projection(), dx, dy)); return;
-        case Does::drag: drag(state, input); return;
+        case Does::orbit:
+            set_camera(state, orbited(state.projection(), dx, dy));
+            return;
+        case Does::pan:
+            set_camera(state, panned(state.projection(), dx, dy));
+            return;
+        case Does::drag:
+            drag(state, input);
+            return;
         case Does::nothing:
         case Does::grab:
-        case Does::ignore: return;
+        case Does::ignore:
+            return;
     }
 }
 
@@ -215,7 +220,8 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
     dx_ += share * (input.mouse.x - last_.x);
     dy_ += share * (input.mouse.y - last_.y);
     const Projection view = state.projection();
-    const auto skeleton = moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale);
+    const auto skeleton =
+        moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale);
     if (!skeleton) return;
     Scene scene = state.document.scene();
     Element& element = scene.elements[grabbed_->element];
@@ -233,7 +239,8 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
     state.document.drag_to(std::move(scene));
 }
 
-Vec3d ViewportMouse::place_of(const Projection& view, const Skeleton& skeleton, double scale) const {
+Vec3d ViewportMouse::place_of(const Projection& view, const Skeleton& skeleton,
+                              double scale) const {
     // An arrow keeps the factor that it was grabbed with, so that its tip stays under the pointer.
     const auto* circle = std::get_if<CircleSkeleton>(&skeleton);
     if (circle != nullptr && grabbed_->name == "normal") {
@@ -264,7 +271,8 @@ void ViewportMouse::release(ViewerState& state) {
         case Does::grab:
         case Does::orbit:
         case Does::pan:
-        case Does::ignore: break;
+        case Does::ignore:
+            break;
     }
     grabbed_.reset();
     axis_.reset();

@@ -15,7 +15,8 @@
 
 namespace ivory {
 
-// One degree of freedom to grab. Names: `position`; `a`, `b`, `middle`; `center`, `normal`, `radius`.
+// One degree of freedom to grab. Names: `position`; `a`, `b`, `middle`; `center`, `normal`,
+// `radius`.
 struct Handle {
     std::size_t element = 0;
     std::string name;
@@ -28,13 +29,13 @@ struct Handle {
 inline constexpr double grab_radius = 11;
 
 // The handles of one element that lie in the viewport. No two of them hide one another: where two
-// would fall together (a circle's normal seen along itself) the later one is moved aside, to the first
-// free place of eight around it, beginning at the right and going down.
+// would fall together (a circle's normal seen along itself) the later one is moved aside, to the
+// first free place of eight around it, beginning at the right and going down.
 [[nodiscard]] std::vector<Handle> handles_of(const ViewerState& state, std::size_t element);
 
-// The mouse in the viewport: orbit, pan, zoom, pick, hover, and a handle's drag with axis lock (X, Y,
-// Z, again to unlock), Shift for fine, Ctrl for round numbers and Escape to cancel. One object for the
-// life of the viewer.
+// The mouse in the viewport: orbit, pan, zoom, pick, hover, and a handle's drag with axis lock (X,
+// Y, Z, again to unlock), Shift for fine, Ctrl for round numbers and Escape to cancel. One object
+// for the life of the viewer.
 class ViewportMouse {
   public:
     // After draw_panels, before draw_overlay; only what no panel takes (ImGui's WantCaptureMouse).
@@ -51,7 +52,7 @@ class ViewportMouse {
   private:
     enum class Does : std::uint8_t {
         nothing,
-        press,   // left, not yet moved: a click or an orbit
+        press,  // left, not yet moved: a click or an orbit
         orbit,
         pan,
         grab,    // a handle is held since this frame; text fields first take what was typed
@@ -65,7 +66,8 @@ class ViewportMouse {
     void hover(const ViewerState& state, const Input& input);
     void begin_drag(ViewerState& state);
     void drag(ViewerState& state, const Input& input);
-    [[nodiscard]] Vec3d place_of(const Projection& view, const Skeleton& skeleton, double scale) const;
+    [[nodiscard]] Vec3d place_of(const Projection& view, const Skeleton& skeleton,
+                                 double scale) const;
     void let_go();
     void click(ViewerState& state);
     void center_orbit(ViewerState& state) const;
@@ -81,10 +83,10 @@ class ViewportMouse {
     bool clicked_before_ = false;           // the last press was a click's
     bool again_ = false;                    // this one makes it a double click
 
-    Skeleton start_;            // of the drag
+    Skeleton start_;  // of the drag
     Vec3d grabbed_from_;
-    WindowPoint grabbed_at_;    // the handle's, in the window
-    double dx_ = 0, dy_ = 0;    // of the drag, pixels; with Shift fewer than the pointer's
+    WindowPoint grabbed_at_;  // the handle's, in the window
+    double dx_ = 0, dy_ = 0;  // of the drag, pixels; with Shift fewer than the pointer's
     bool round_ = false;
 };
 

@@ -19,9 +19,7 @@ using Line = std::vector<WindowPoint>;
 
 constexpr int circle_steps = 64, outline_steps = 96;
 
-double length(const Vec3d& v) {
-    return std::hypot(v.x, v.y, v.z);
-}
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
 
 // Two unit vectors across the unit vector n and each other.
 std::pair<Vec3d, Vec3d> across(const Vec3d& n) {
@@ -30,9 +28,11 @@ std::pair<Vec3d, Vec3d> across(const Vec3d& n) {
     return {e, cross(n, e)};
 }
 
-Vec3d on_circle(const CircleSkeleton& circle, const std::pair<Vec3d, Vec3d>& axes, int step, int steps) {
+Vec3d on_circle(const CircleSkeleton& circle, const std::pair<Vec3d, Vec3d>& axes, int step,
+                int steps) {
     const double angle = 2 * std::numbers::pi * step / steps;
-    return circle.center + circle.radius * (std::cos(angle) * axes.first + std::sin(angle) * axes.second);
+    return circle.center +
+           circle.radius * (std::cos(angle) * axes.first + std::sin(angle) * axes.second);
 }
 
 // A sphere of radius r at distance D is seen as the circle of radius r sqrt(1 - r^2/D^2) that lies
@@ -49,8 +49,8 @@ std::optional<Line> sphere_outline(const Projection& view, const Vec3d& center, 
     Line line;
     for (int step = 0; step < outline_steps; ++step) {
         const double angle = 2 * std::numbers::pi * step / outline_steps;
-        const auto seen = view.project(
-            middle + seen_radius * (std::cos(angle) * e1 + std::sin(angle) * e2));
+        const auto seen =
+            view.project(middle + seen_radius * (std::cos(angle) * e1 + std::sin(angle) * e2));
         if (!seen) return std::nullopt;
         line.push_back(*seen);
     }
@@ -59,9 +59,8 @@ std::optional<Line> sphere_outline(const Projection& view, const Vec3d& center, 
 
 // Andrew's monotone chain.
 Line convex_hull(Line points) {
-    std::sort(points.begin(), points.end(), [](WindowPoint a, WindowPoint b) {
-        return a.x != b.x ? a.x < b.x : a.y < b.y;
-    });
+    std::sort(points.begin(), points.end(),
+              [](WindowPoint a, WindowPoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     const auto turn = [](WindowPoint o, WindowPoint a, WindowPoint b) {
         return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
     };
@@ -79,9 +78,9 @@ Line convex_hull(Line points) {
     return hull;
 }
 
-// The outline of a tube around a curve: where its normal n, across the tangent, is also across the line
-// of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit vectors across
-// the tangent that fixes two, one for each edge.
+// The outline of a tube around a curve: where its normal n, across the tangent, is also across the
+// line of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit
+// vectors across the tangent that fixes two, one for each edge.
 std::vector<Line> circle_tube_outline(const Projection& view, const CircleSkeleton& circle,
                                       double radius) {
     const Vec3d n = unit(circle.normal);
@@ -110,7 +109,8 @@ std::vector<Line> circle_tube_outline(const Projection& view, const CircleSkelet
 
 std::vector<Vec3d> skeleton_line(const Skeleton& skeleton) {
     if (const auto* point = std::get_if<PointSkeleton>(&skeleton)) return {point->position};
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) return {segment->a, segment->b};
+    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton))
+        return {segment->a, segment->b};
     const auto& circle = std::get<CircleSkeleton>(skeleton);
     const auto axes = across(unit(circle.normal));
     std::vector<Vec3d> line;

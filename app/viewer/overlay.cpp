@@ -26,22 +26,20 @@ constexpr ImU32 selected_color = IM_COL32(255, 190, 92, 255);
 constexpr ImU32 handle_color = IM_COL32(252, 250, 244, 255);
 constexpr ImU32 border_color = IM_COL32(16, 17, 20, 210);
 constexpr ImU32 label_background = IM_COL32(20, 21, 25, 225);
-constexpr std::array<ImU32, 3> axis_colors = {IM_COL32(242, 98, 92, 255), IM_COL32(126, 208, 108, 255),
-                                              IM_COL32(104, 158, 250, 255)};
+constexpr std::array<ImU32, 3> axis_colors = {
+    IM_COL32(242, 98, 92, 255), IM_COL32(126, 208, 108, 255), IM_COL32(104, 158, 250, 255)};
 
 // Of what lies behind the surface: light enough to follow, faint enough to tell.
 constexpr float behind_alpha = 0.5f, border_behind_alpha = 0.16f;
-constexpr double piece_pixels = 7;     // at scale 1: of a line between two looks at the depth
+constexpr double piece_pixels = 7;  // at scale 1: of a line between two looks at the depth
 constexpr int most_pieces = 96;
 // Beyond so many elements the lines of all would hide the picture, and take longer to draw than it.
 constexpr std::size_t most_borders = 150, most_lines = 3'000;
 
-ImVec2 vec(WindowPoint p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y)};
-}
+ImVec2 vec(WindowPoint p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
 
 ImU32 with_alpha(ImU32 color, float share) {
-    const auto alpha = static_cast<float>(color >> IM_COL32_A_SHIFT) * share;
+    const float alpha = static_cast<float>(color >> IM_COL32_A_SHIFT) * share;
     return (color & ~IM_COL32_A_MASK) | (static_cast<ImU32>(alpha + 0.5f) << IM_COL32_A_SHIFT);
 }
 
@@ -63,7 +61,9 @@ class Pen {
 
     [[nodiscard]] float px(double pixels) const { return static_cast<float>(pixels) * px_; }
     // The width of a line, in whole pixels: ImGui draws such lines with half the corners.
-    [[nodiscard]] float line_width(double pixels) const { return std::max(1.0f, std::round(px(pixels))); }
+    [[nodiscard]] float line_width(double pixels) const {
+        return std::max(1.0f, std::round(px(pixels)));
+    }
     [[nodiscard]] const Projection& view() const { return view_; }
 
     // In the window.
@@ -91,7 +91,8 @@ class Pen {
         }
         run_.clear();
         pending_ = false;
-        for (std::size_t i = 0; i + 1 < line.size(); ++i) pieces(line[i], line[i + 1], color, selected);
+        for (std::size_t i = 0; i + 1 < line.size(); ++i)
+            pieces(line[i], line[i + 1], color, selected);
         flush(color, selected);
         if (line.size() == 2 && !selected)
             for (const Vec3d& end : line) dot(end, color, selected);
@@ -114,8 +115,8 @@ class Pen {
 
   private:
     void closed_line(ImU32 color, float thickness) {
-        list_.AddPolyline(points_.data(), static_cast<int>(points_.size()), color, ImDrawFlags_Closed,
-                          thickness);
+        list_.AddPolyline(points_.data(), static_cast<int>(points_.size()), color,
+                          ImDrawFlags_Closed, thickness);
     }
 
     void dot(const Vec3d& place, ImU32 color, bool selected) {
@@ -171,9 +172,10 @@ class Pen {
             const float alpha = run_behind_ ? behind_alpha : 1;
             const int count = static_cast<int>(run_.size());
             if (selected || count_ <= most_borders)
-                list_.AddPolyline(run_.data(), count,
-                                  with_alpha(border_color, run_behind_ ? border_behind_alpha : 0.8f), 0,
-                                  line_width(selected ? 5 : 4));
+                list_.AddPolyline(
+                    run_.data(), count,
+                    with_alpha(border_color, run_behind_ ? border_behind_alpha : 0.8f), 0,
+                    line_width(selected ? 5 : 4));
             list_.AddPolyline(run_.data(), count, with_alpha(color, alpha), 0,
                               line_width(selected ? 3 : 2));
         }
@@ -208,8 +210,8 @@ void draw_skeletons(const ViewerState& state, Pen& pen) {
     pen.skeleton(element, true);
 }
 
-void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle, bool hovered, bool held,
-                 ImDrawList& list) {
+void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle, bool hovered,
+                 bool held, ImDrawList& list) {
     const ImVec2 at = vec(handle.at);
     const ImU32 fill = held || hovered ? selected_color : handle_color;
     const float radius = pen.px(held || hovered ? 7.5 : 5.5), border = pen.px(1.6);
@@ -224,7 +226,8 @@ void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle,
         const float half = 0.88f * radius;
         list.AddRectFilled({at.x - half - border, at.y - half - border},
                            {at.x + half + border, at.y + half + border}, border_color, pen.px(2.5));
-        list.AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half}, fill, pen.px(1.5));
+        list.AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half}, fill,
+                           pen.px(1.5));
     } else if (diamond) {
         const float half = 1.2f * radius;
         list.AddNgonFilled(at, half + border * 1.3f, border_color, 4);
@@ -257,8 +260,8 @@ void draw_arms(const Pen& pen, const std::vector<Handle>& handles, ImDrawList& l
 void draw_locked_axis(const ViewerState& state, const Pen& pen, const Vec3d& place, int axis,
                       ImDrawList& list) {
     // long enough to leave the viewport on both sides, as far as it lies before the camera
-    const double reach = pen.view().length_of_pixel(place) * 4 *
-                         (state.viewport.width + state.viewport.height);
+    const double reach =
+        pen.view().length_of_pixel(place) * 4 * (state.viewport.width + state.viewport.height);
     Vec3d direction;
     direction[static_cast<std::size_t>(axis)] = 1;
     for (const double side : {-1.0, 1.0}) {
@@ -268,7 +271,8 @@ void draw_locked_axis(const ViewerState& state, const Pen& pen, const Vec3d& pla
         const auto start = pen.project(place);
         if (!start || !end) continue;
         list.AddLine(vec(*start), vec(*end), with_alpha(border_color, 0.5f), pen.px(3));
-        list.AddLine(vec(*start), vec(*end), axis_colors[static_cast<std::size_t>(axis)], pen.px(1.4));
+        list.AddLine(vec(*start), vec(*end), axis_colors[static_cast<std::size_t>(axis)],
+                     pen.px(1.4));
     }
 }
 
@@ -299,8 +303,8 @@ std::string drag_label(const ViewerState& state, const ViewportMouse& mouse, con
            short_number(value.z, pixel);
 }
 
-void draw_label(const ViewerState& state, const Pen& pen, const std::string& text, WindowPoint beside,
-                ImDrawList& list) {
+void draw_label(const ViewerState& state, const Pen& pen, const std::string& text,
+                WindowPoint beside, ImDrawList& list) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float pad = pen.px(7), gap = pen.px(18);
     const WindowRect& viewport = state.viewport;
@@ -313,7 +317,8 @@ void draw_label(const ViewerState& state, const Pen& pen, const std::string& tex
     at.x = std::floor(std::max(at.x, left + pad));
     at.y = std::floor(std::max(at.y, top + pad));
     list.AddRectFilled({at.x - pad, at.y - 0.6f * pad},
-                       {at.x + size.x + pad, at.y + size.y + 0.6f * pad}, label_background, pen.px(5));
+                       {at.x + size.x + pad, at.y + size.y + 0.6f * pad}, label_background,
+                       pen.px(5));
     list.AddText(at, handle_color, text.c_str());
 }
 
@@ -344,7 +349,8 @@ void draw_overlay(const ViewerState& state, const ViewportMouse& mouse, ImDrawLi
     for (const Handle& handle : handles)
         if (handle.name != grabbed.name) draw_handle(state, pen, handle, false, false, list);
     draw_handle(state, pen, grabbed, false, true, list);
-    if (state.document.dragging()) draw_label(state, pen, drag_label(state, mouse, pen), grabbed.at, list);
+    if (state.document.dragging())
+        draw_label(state, pen, drag_label(state, mouse, pen), grabbed.at, list);
 }
 
 }  // namespace ivory

@@ -1,5 +1,5 @@
-// The skeleton drawn over the picture: lines dimmed where they lie behind the surface, the iso-ring of
-// the selected element, handles, the axis of a locked drag.
+// The skeleton drawn over the picture: lines dimmed where they lie behind the surface, the iso-ring
+// of the selected element, handles, the axis of a locked drag.
 #pragma once
 
 #include "app/panels/viewer_state.h"

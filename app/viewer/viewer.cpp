@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -47,9 +48,14 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+bool holds_a_button(const Input& input) {
+    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) != input.mouse_down.end();
+}
+
+// Since the frame before, beyond a pointer that moves.
 bool something_happened(const Input& input) {
-    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) != input.mouse_down.end() ||
-           input.wheel != 0 || !input.pressed.empty() || !input.text.empty();
+    return input.wheel != 0 || input.wheel_x != 0 || !input.pressed.empty() || !input.text.empty() ||
+           !input.dropped.empty() || input.theme || input.close_requested;
 }
 
 // What the session was last asked for.
@@ -77,6 +83,7 @@ struct Viewer::Parts {
     std::optional<std::pair<Theme, double>> style;  // theme and scale that ImGui stands at
     bool overlay_hidden = false, minimised = false;
     int frames_to_settle = settling_frames;
+    std::array<bool, mouse_button_count> mouse_down{};  // in the frame before
     std::optional<Clock::time_point> edited;  // when the picture that is awaited was asked for
     ViewerTimes times;
 
@@ -94,7 +101,7 @@ struct Viewer::Parts {
     // When the edit was made whose first picture has just come, if one has.
     std::optional<Clock::time_point> take_picture(const Input& input) {
         const PictureChange change =
-            session.poll(!settings.hold_back_coarse || something_happened(input));
+            session.poll(!settings.hold_back_coarse || holds_a_button(input) || something_happened(input));
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();
@@ -155,8 +162,10 @@ struct Viewer::Parts {
                       static_cast<float>(background.b) / 255, 1);
         gl.Disable(gl::scissor_test);
         gl.Clear(gl::color_buffer_bit);
-        texture.draw(state.viewport, input.size, background);
+        if (!overlay_hidden) texture.draw(state.viewport, input.size, background);
         imgui_renderer.draw(*ImGui::GetDrawData(), input.size);
+        // over tooltips and dialogs too
+        if (overlay_hidden) texture.draw(state.viewport, input.size, background);
     }
 
     void fulfil_wishes(const Viewer& viewer) {
@@ -185,10 +194,12 @@ void Viewer::frame(const Input& input) {
     if (parts.minimised) return;
 
     const std::optional<Clock::time_point> edit_shown = parts.take_picture(input);
+    if (something_happened(input) || state.window != input.size || state.scale != input.scale ||
+        parts.mouse_down != input.mouse_down)
+        parts.frames_to_settle = settling_frames;
+    parts.mouse_down = input.mouse_down;
     parts.set_style(input);
     state.window = input.size;
-    if (something_happened(input) || !input.dropped.empty() || input.close_requested)
-        parts.frames_to_settle = settling_frames;
     for (const std::string& file : input.dropped) request_open(state, file);
     if (input.close_requested) request_quit(state);
 

@@ -41,7 +41,8 @@ class Viewer {
     // Input in, a frame drawn into the context's buffer and presented. Never waits for the renderer.
     // Nothing is drawn while the window has no size.
     void frame(const Input& input);
-    // Until it is called again: frames without skeleton, handles and rings.
+    // Until it is called again: frames with nothing over the picture, neither skeleton, handles and rings
+    // nor a tooltip or dialog.
     void hide_overlay(bool hidden);
 
     // Seconds after which a frame is wanted though nothing happens; < 0: none is.

@@ -57,8 +57,7 @@ TEST(Elements, DefaultNamesFollowTheOrder) {
 }
 
 TEST(Elements, ADefaultThatIsTakenIsWrittenWithTheNextFreeNumber) {
-    const Scene scene =
-        with_element(scene_of({point(0), named(circle(), "point 2")}), point(1));
+    const Scene scene = with_element(scene_of({point(0), named(circle(), "point 2")}), point(1));
     EXPECT_EQ(element_names(scene), (Names{"point 1", "point 2", "point 3"}));
     EXPECT_FALSE(find_fault(scene));
 }
@@ -77,8 +76,8 @@ TEST(Elements, ACopyIsTheSameButForItsName) {
 }
 
 TEST(Elements, MovingKeepsTheOrderOfTheOthers) {
-    const Scene scene = scene_of({named(point(0), "a"), named(point(1), "b"), named(point(2), "c"),
-                                  named(point(3), "d")});
+    const Scene scene = scene_of(
+        {named(point(0), "a"), named(point(1), "b"), named(point(2), "c"), named(point(3), "d")});
     EXPECT_EQ(element_names(with_element_moved(scene, 0, 2)), (Names{"b", "c", "a", "d"}));
     EXPECT_EQ(element_names(with_element_moved(scene, 3, 0)), (Names{"d", "a", "b", "c"}));
     EXPECT_EQ(element_names(with_element_moved(scene, 1, 1)), (Names{"a", "b", "c", "d"}));
@@ -106,8 +105,8 @@ TEST(Elements, AnyRowOfEditsLeavesAValidScene) {
             const std::size_t n = scene.elements.size();
             const std::size_t kind = n == 0 ? 0 : below(5);
             if (kind == 0)
-                scene = with_element(scene, new_element(static_cast<ElementShape>(below(3)),
-                                                        {0, 0, 0}, 1, n));
+                scene = with_element(
+                    scene, new_element(static_cast<ElementShape>(below(3)), {0, 0, 0}, 1, n));
             if (kind == 1) scene = without_element(scene, below(n));
             if (kind == 2) scene = with_copy(scene, below(n));
             if (kind == 3) scene = with_element_moved(scene, below(n), below(n));

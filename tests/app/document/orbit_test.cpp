@@ -13,17 +13,13 @@ namespace {
 
 constexpr WindowSize size{1280, 720};
 
-double length(const Vec3d& v) {
-    return std::sqrt(dot(v, v));
-}
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-double distance(const Camera& camera) {
-    return length(camera.position - camera.target);
-}
+double distance(const Camera& camera) { return length(camera.position - camera.target); }
 
 void expect_near(const Vec3d& a, const Vec3d& b, double within) {
-    EXPECT_LE(length(a - b), within) << a.x << ' ' << a.y << ' ' << a.z << " is not " << b.x << ' '
-                                     << b.y << ' ' << b.z;
+    EXPECT_LE(length(a - b), within)
+        << a.x << ' ' << a.y << ' ' << a.z << " is not " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 // A view from anywhere, never near a pole.
@@ -31,8 +27,8 @@ Camera some_camera(std::mt19937_64& random) {
     std::uniform_real_distribution<double> coordinate(-5, 5);
     Camera camera;
     camera.target = {coordinate(random), coordinate(random), coordinate(random)};
-    camera.position = camera.target + Vec3d{coordinate(random), 0.5 * coordinate(random),
-                                            6 + coordinate(random)};
+    camera.position =
+        camera.target + Vec3d{coordinate(random), 0.5 * coordinate(random), 6 + coordinate(random)};
     camera.fov = 20 + 8 * std::abs(coordinate(random));
     return camera;
 }
@@ -183,8 +179,7 @@ TEST(Frame, TheSphereAroundTheBoxFitsBothWays) {
         const Projection view(after, shape);
         expect_near(view.back(), before.back(), 1e-12);
         for (const double angle : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
-            const Vec3d around =
-                std::cos(angle) * view.right() + std::sin(angle) * view.top();
+            const Vec3d around = std::cos(angle) * view.right() + std::sin(angle) * view.top();
             const auto seen = view.project(after.target + length(half) * around);
             ASSERT_TRUE(seen);
             EXPECT_TRUE((WindowRect{0, 0, shape.width, shape.height}.contains(*seen)));
@@ -215,7 +210,9 @@ TEST(AxisView, LooksExactlyAlongTheAxis) {
             ASSERT_FALSE(find_fault(after));
             const Vec3d line = after.position - after.target;
             for (int k = 0; k < 3; ++k) {
-                const double expected = k != axis ? 0 : opposite ? -distance(before) : distance(before);
+                const double expected = k != axis  ? 0
+                                        : opposite ? -distance(before)
+                                                   : distance(before);
                 EXPECT_NEAR(line[static_cast<std::size_t>(k)], expected, 1e-14);
             }
         }

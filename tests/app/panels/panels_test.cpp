@@ -57,8 +57,8 @@ TEST(Layout, NothingOverlapsAndNothingIsCutOff) {
         WindowSize size;
         double scale;
     };
-    for (const auto& [size, scale] : {Case{{1280, 720}, 1}, Case{{2560, 1440}, 2}, Case{{1920, 1080}, 1.25},
-                                      Case{{1920, 1080}, 1}}) {
+    for (const auto& [size, scale] : {Case{{1280, 720}, 1}, Case{{2560, 1440}, 2},
+                                      Case{{1920, 1080}, 1.25}, Case{{1920, 1080}, 1}}) {
         for (std::size_t selected = 0; selected < 4; ++selected) {
             SCOPED_TRACE(std::to_string(size.width) + " at " + number_text(scale) + ", " +
                          std::to_string(selected));
@@ -71,8 +71,9 @@ TEST(Layout, NothingOverlapsAndNothingIsCutOff) {
             for (auto a = all.begin(); a != all.end(); ++a) {
                 const auto part = a->second.visible_part();
                 if (!part) continue;
-                EXPECT_TRUE(window.contains({part->x + 0.5, part->y + 0.5}) &&
-                            window.contains({part->x + part->width - 0.5, part->y + part->height - 0.5}))
+                EXPECT_TRUE(
+                    window.contains({part->x + 0.5, part->y + 0.5}) &&
+                    window.contains({part->x + part->width - 0.5, part->y + part->height - 0.5}))
                     << a->first;
                 EXPECT_GE(part->width, a->second.rect.width - 1) << a->first << " is cut off";
                 EXPECT_FALSE(overlap(*part, bench.state.viewport)) << a->first;
@@ -101,7 +102,8 @@ TEST(Layout, ScaledByTwoItIsTheSameTwiceAsLarge) {
 }
 
 TEST(Layout, TheSmallestWindowsStillHaveAViewport) {
-    for (const WindowSize size : {WindowSize{1, 1}, WindowSize{40, 30}, WindowSize{320, 200}, WindowSize{3000, 50}}) {
+    for (const WindowSize size :
+         {WindowSize{1, 1}, WindowSize{40, 30}, WindowSize{320, 200}, WindowSize{3000, 50}}) {
         ViewerBench bench(figure(), size);
         bench.state.document.select(2);
         bench.turns(3);
@@ -124,7 +126,8 @@ TEST(Number, WhatIsTypedIsExactlyThatDouble) {
     ViewerBench bench(figure());
     bench.state.document.select(0);
     bench.turn();
-    for (const double value : {0.1, 1.0 / 3, 0.30000000000000004, -1e-17, 123456789.12345678, 5e-324, 1e300}) {
+    for (const double value :
+         {0.1, 1.0 / 3, 0.30000000000000004, -1e-17, 123456789.12345678, 5e-324, 1e300}) {
         bench.enter("element.position.y", number_text(value));
         EXPECT_EQ(std::get<PointSkeleton>(bench.element(0).skeleton).position.y, value);
     }
@@ -195,10 +198,15 @@ TEST(Number, WhatNoSceneMayHoldIsRefusedWithAMessage) {
     bench.state.document.select(2);
     bench.turn();
     const auto before = bench.state.document.scene_value();
-    for (const auto& [id, text] : std::vector<std::pair<std::string, std::string>>{
-             {"threshold", "0"}, {"threshold", "-1"}, {"threshold", "nonsense"}, {"threshold", "1e999"},
-             {"element.strength", "0"}, {"element.width", "0"}, {"element.radius", "-1"},
-             {"light.0.intensity", "-0.5"}}) {
+    for (const auto& [id, text] :
+         std::vector<std::pair<std::string, std::string>>{{"threshold", "0"},
+                                                          {"threshold", "-1"},
+                                                          {"threshold", "nonsense"},
+                                                          {"threshold", "1e999"},
+                                                          {"element.strength", "0"},
+                                                          {"element.width", "0"},
+                                                          {"element.radius", "-1"},
+                                                          {"light.0.intensity", "-0.5"}}) {
         SCOPED_TRACE(id + " " + text);
         bench.state.message = {};
         bench.enter(id, text);
@@ -228,7 +236,8 @@ TEST(Number, ParsesWhatPeopleType) {
     EXPECT_EQ(parse_number("1e-3", 0), 1e-3);
     EXPECT_EQ(parse_number("-=0.5", 2), 1.5);
     EXPECT_EQ(parse_number("/=4", 2), 0.5);
-    for (const char* text : {"", " ", "abc", "1.2.3", "1,2,3", "nan", "inf", "/=0", "1e999", "0.5x", "+="})
+    for (const char* text :
+         {"", " ", "abc", "1.2.3", "1,2,3", "nan", "inf", "/=0", "1e999", "0.5x", "+="})
         EXPECT_EQ(parse_number(text, 1), std::nullopt) << text;
 }
 
@@ -299,7 +308,8 @@ TEST(Elements, RowsSelectHideAndReorder) {
     EXPECT_EQ(bench.state.document.selected(), 0u);
     EXPECT_TRUE(std::holds_alternative<SegmentSkeleton>(bench.element(0).skeleton));
     // dragged below the last one
-    bench.drag(bench.at("row.segment 1"), 0, bench.at("row.circle 1").y - bench.at("row.segment 1").y + 4, 8);
+    bench.drag(bench.at("row.segment 1"), 0,
+               bench.at("row.circle 1").y - bench.at("row.segment 1").y + 4, 8);
     EXPECT_TRUE(std::holds_alternative<SegmentSkeleton>(bench.element(2).skeleton));
     EXPECT_EQ(bench.state.document.selected(), 2u);
 }
@@ -390,7 +400,8 @@ TEST(Keys, DoWhatTheTableSays) {
     bench.key(Key::digit3, {.control = true});
     EXPECT_EQ(bench.state.projection().back(), (Vec3d{-1, 0, 0}));
     bench.key(Key::f);
-    EXPECT_EQ(bench.state.view.camera.target, (Vec3d{-0.25, -0.625, 0.125}));  // the segment's middle
+    EXPECT_EQ(bench.state.view.camera.target,
+              (Vec3d{-0.25, -0.625, 0.125}));  // the segment's middle
     bench.key(Key::f12);
     EXPECT_TRUE(bench.state.screenshot_wanted);
     bench.type("?");

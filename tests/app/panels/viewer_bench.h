@@ -70,7 +70,9 @@ class ViewerBench {
 
     void move_to(WindowPoint at) { turn(MouseMoved{at}); }
     void press(MouseButton button = MouseButton::left) { turn(MouseButtonChanged{button, true}); }
-    void release(MouseButton button = MouseButton::left) { turn(MouseButtonChanged{button, false}); }
+    void release(MouseButton button = MouseButton::left) {
+        turn(MouseButtonChanged{button, false});
+    }
     void hold(Key key) { turn(KeyChanged{key, true, false}); }
     void let(Key key) { turn(KeyChanged{key, false, false}); }
     void key(Key key, Modifiers modifiers = {}) {
@@ -96,7 +98,8 @@ class ViewerBench {
     void drag(WindowPoint from, double dx, double dy, int steps = 10) {
         move_to(from);
         press();
-        for (int i = 1; i <= steps; ++i) move_to({from.x + dx * i / steps, from.y + dy * i / steps});
+        for (int i = 1; i <= steps; ++i)
+            move_to({from.x + dx * i / steps, from.y + dy * i / steps});
         release();
         turn();
     }

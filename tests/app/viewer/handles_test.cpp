@@ -32,8 +32,9 @@ struct Grabbed {
     std::size_t element;
     std::string handle;
 };
-const std::vector<Grabbed> all_handles = {{0, "position"}, {1, "a"},      {1, "b"},     {1, "middle"},
-                                          {2, "center"},   {2, "normal"}, {2, "radius"}};
+const std::vector<Grabbed> all_handles = {{0, "position"}, {1, "a"},      {1, "b"},
+                                          {1, "middle"},   {2, "center"}, {2, "normal"},
+                                          {2, "radius"}};
 const std::vector<Grabbed> free_handles = {{0, "position"}, {1, "a"},      {1, "b"},
                                            {1, "middle"},   {2, "center"}, {2, "normal"}};
 
@@ -265,13 +266,13 @@ TEST(Handles, AClickOnOneWithoutAMoveChangesNothing) {
 
 TEST(Handles, NoTwoOfOneElementHideOneAnother) {
     const std::vector<Skeleton> skeletons = {
-        SegmentSkeleton{{0.25, 0.5, 0}, {0.25, 0.5, 0}},              // both ends at one place
-        SegmentSkeleton{{0, 0, 0}, {0.02, 0, 0}},                     // far too short
-        SegmentSkeleton{{-1, -1, 1}, {1.7, 0.8, 4.2}},                // towards the camera
-        CircleSkeleton{{0, 0, 0}, {3, 2, 7}, 1},                      // seen along its normal
-        CircleSkeleton{{0, 0, 0}, {0, 1, 0}, 0},                      // no radius
-        CircleSkeleton{{1, 0, 0}, {1e-200, 2e-200, 1e-200}, 1e-9},    // hardly anything
-        CircleSkeleton{{1, 0, 0}, {1e200, -1e200, 1e190}, 1.5},       // a very long normal
+        SegmentSkeleton{{0.25, 0.5, 0}, {0.25, 0.5, 0}},            // both ends at one place
+        SegmentSkeleton{{0, 0, 0}, {0.02, 0, 0}},                   // far too short
+        SegmentSkeleton{{-1, -1, 1}, {1.7, 0.8, 4.2}},              // towards the camera
+        CircleSkeleton{{0, 0, 0}, {3, 2, 7}, 1},                    // seen along its normal
+        CircleSkeleton{{0, 0, 0}, {0, 1, 0}, 0},                    // no radius
+        CircleSkeleton{{1, 0, 0}, {1e-200, 2e-200, 1e-200}, 1e-9},  // hardly anything
+        CircleSkeleton{{1, 0, 0}, {1e200, -1e200, 1e190}, 1.5},     // a very long normal
     };
     for (const double scale : {1.0, 2.0}) {
         for (const Skeleton& skeleton : skeletons) {
@@ -344,7 +345,8 @@ TEST(Viewport, AClickBesideTheSurfaceSelectsASkeletonThere) {
     ViewerBench bench(scene);
     const Projection view = bench.state.projection();
     const WindowPoint seen = view.project({-0.25, -0.625, 0.125}).value();
-    bench.click(WindowPoint{seen.x + bench.state.viewport.x + 3, seen.y + bench.state.viewport.y - 3});
+    bench.click(
+        WindowPoint{seen.x + bench.state.viewport.x + 3, seen.y + bench.state.viewport.y - 3});
     EXPECT_EQ(bench.state.document.selected(), 1u);
 }
 
