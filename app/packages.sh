@@ -9,6 +9,8 @@ build_packages=(
     libglfw3-dev libglm-dev libimgui-dev libstb-dev
     libgtest-dev libmpfr-dev
 )
+# What the tests of the viewer run on: OpenGL in memory, a display in memory and its pointer.
+test_packages=(libosmesa6 libegl1 xvfb xdotool python3)
 installed_now=no
 log=
 trap 'rm -f -- "$log"' EXIT
