@@ -6,6 +6,27 @@
 #include "core/field/bounding_box.h"
 
 namespace ivory {
+namespace {
+
+bool is_compact(const Field& field) {
+    constexpr double largest = 1e30;
+    const auto moderate = [](double x) { return x > 1 / largest && x < largest; };
+    if (!moderate(field.threshold) || !moderate(field.least_width) ||
+        !moderate(field.greatest_width) || !(field.greatest_width < 1e6 * field.least_width)) {
+        return false;
+    }
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const Vec3d a = field.a(i), b = field.b(i);
+        const double most =
+            std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x), std::abs(b.y),
+                      std::abs(b.z), field.radius[i]});
+        const double share = std::abs(field.strength[i]) / field.threshold;
+        if (!(most < largest && share > 1e-30 && share < 1e12)) return false;
+    }
+    return true;
+}
+
+}  // namespace
 
 Field compile(const Scene& scene) {
     Field field;
@@ -53,6 +74,9 @@ Field compile(const Scene& scene) {
     }
     field.least_width =
         field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());
+    field.greatest_width =
+        field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
+    field.compact = is_compact(field);
     field.reach_box = box_of_reach(field);
     field.box = shrunk_box(field, field.reach_box);
     return field;

@@ -20,6 +20,11 @@ enum class Shape : std::uint8_t { point, segment, circle };
 struct Field {
     double threshold = 0;    // T
     double least_width = 0;  // the least w_i; 1 where there is no element
+    double greatest_width = 0;
+    // No number is so large or so small, nor any strength so far above T or any two widths so far
+    // apart, that products of four of them could leave the range of double: what
+    // core/field/bundle.h asks for.
+    bool compact = false;
 
     std::vector<Shape> shape;
     std::vector<KernelKind> kernel;

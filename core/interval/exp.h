@@ -42,6 +42,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/interval/interval.h"
@@ -68,6 +69,12 @@ struct ExpConstants<double> {
     static constexpr double ln2_low = 0x1.ef35793c76730p-45;  // L2
     static constexpr double least = -708;
     static constexpr double greatest = 709;
+    // Q(r), lowest power first.
+    static constexpr double tail[] = {0x1.5555555555556p-3,  0x1.5555555555556p-5,
+                                      0x1.11111111109b6p-7,  0x1.6c16c16c162d8p-10,
+                                      0x1.a01a01a7c12bbp-13, 0x1.a01a01a6d6122p-16,
+                                      0x1.71de0dbd7b455p-19, 0x1.27e4db6eb2e8bp-22,
+                                      0x1.af387497dfeffp-26, 0x1.1f72e3be86384p-29};
     using Bits = std::uint64_t;
 };
 
@@ -79,6 +86,8 @@ struct ExpConstants<float> {
     static constexpr float ln2_low = 0x1.7f7d1cp-20f;
     static constexpr float least = -87;
     static constexpr float greatest = 88;
+    static constexpr float tail[] = {0x1.555556p-3f, 0x1.55551ap-5f, 0x1.1110e2p-7f, 0x1.6d10bp-10f,
+                                     0x1.a1249ap-13f};
     using Bits = std::uint32_t;
 };
 
@@ -86,19 +95,17 @@ struct ExpConstants<float> {
 // from one of them.
 template <IeeeReal Real, class Number>
 [[nodiscard]] constexpr Number exp_tail(Number r, Number r2) {
-    const auto c = [](Real value) { return Number(value); };
+    const auto c = [](std::size_t i) { return Number(ExpConstants<Real>::tail[i]); };
+    const Number q01 = c(0) + c(1) * r;
+    const Number q23 = c(2) + c(3) * r;
     if constexpr (std::same_as<Real, double>) {
         const Number r4 = r2 * r2;
-        const Number q01 = c(0x1.5555555555556p-3) + c(0x1.5555555555556p-5) * r;
-        const Number q23 = c(0x1.11111111109b6p-7) + c(0x1.6c16c16c162d8p-10) * r;
-        const Number q45 = c(0x1.a01a01a7c12bbp-13) + c(0x1.a01a01a6d6122p-16) * r;
-        const Number q67 = c(0x1.71de0dbd7b455p-19) + c(0x1.27e4db6eb2e8bp-22) * r;
-        const Number q89 = c(0x1.af387497dfeffp-26) + c(0x1.1f72e3be86384p-29) * r;
+        const Number q45 = c(4) + c(5) * r;
+        const Number q67 = c(6) + c(7) * r;
+        const Number q89 = c(8) + c(9) * r;
         return (r * r2) * ((q01 + q23 * r2) + r4 * ((q45 + q67 * r2) + r4 * q89));
     } else {
-        const Number q01 = c(0x1.555556p-3f) + c(0x1.55551ap-5f) * r;
-        const Number q23 = c(0x1.1110e2p-7f) + c(0x1.6d10bp-10f) * r;
-        return (r * r2) * (q01 + r2 * (q23 + r2 * c(0x1.a1249ap-13f)));
+        return (r * r2) * (q01 + r2 * (q23 + r2 * c(4)));
     }
 }
 

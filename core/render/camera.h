@@ -2,6 +2,7 @@
 // rectangle of them, and the camera of a scene that names none.
 #pragma once
 
+#include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/render/tiles.h"
@@ -40,5 +41,8 @@ struct View {
 // A cone that holds the primary rays, as the doubles they are, of all pixels of a rectangle that is
 // not empty. Proof: camera.cpp.
 [[nodiscard]] Cone cone_around(const View& view, int width, int height, const PixelRect& rect);
+
+// The same as core/field/bundle.h wants it; a spread above 1/2 where the cone is too wide for it.
+[[nodiscard]] Bundle bundle_around(const View& view, int width, int height, const PixelRect& rect);
 
 }  // namespace ivory

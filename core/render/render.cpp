@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <span>
 #include <stop_token>
 #include <system_error>
 #include <thread>
@@ -27,13 +28,16 @@ struct Tally {
     std::vector<std::uint8_t> reached;  // by element
 };
 
-// A pixel between tracing and the frame: nothing of a tile is written before all of it is known, so
-// that a cancelled tile stays what it was.
-struct Traced {
-    int i, j;
-    Isolation isolation;
-    SurfacePoint surface;
-    Rgba8 color;
+// The pixels of a tile between tracing and the frame: nothing of a tile is written before all of it
+// is known, so that a cancelled tile stays what it was.
+struct TracedTile {
+    RayBundle rays;
+    std::array<std::uint32_t, pixels_in_tile> pixel;  // in the frame
+    std::array<Isolation, pixels_in_tile> isolations;
+    std::array<SurfacePoint, pixels_in_tile> surfaces;
+    std::array<Rgba8, pixels_in_tile> colors;
+
+    [[nodiscard]] std::size_t size() const { return rays.size(); }
 };
 
 std::vector<int> strides_of(const JobSettings& settings) {
@@ -323,55 +327,74 @@ class FrameJob::Work {
 
     bool trace_tile(std::size_t index, std::size_t pass, Tally& tally) {
         const TileState& tile = canvas_.tiles[index];
-        const PixelRect rect = tiles().rect(index);
-        const int stride = strides_[pass];
         const Clock::time_point start = Clock::now();
-
-        std::array<Traced, pixels_in_tile> traced;
-        std::size_t count = 0;
-        for (int j = rect.y0; j < rect.y1; j += stride) {
-            if (stopped()) return false;
-            for (int i = rect.x0; i < rect.x1; i += stride) {
-                if (pass > 0 && on_stride(i, j, strides_[pass - 1])) continue;
-                traced[count++] = {i, j, isolate(tile.list, ray(i, j), tally.counts), {}, {}};
-            }
+        TracedTile traced;
+        gather(traced, index, strides_[pass], pass > 0 ? strides_[pass - 1] : 0);
+        const std::span<Isolation> isolations(traced.isolations.data(), traced.size());
+        const Field& field = *picture_.field;
+        picture_.method->isolate_bundle(field, tile.list, traced.rays, picture_.options, isolations,
+                                        tally.counts);
+        // What the list leaves open may be closed by the elements that it left out.
+        const bool all_were_there = tile.list.rest.lo == 0 && tile.list.rest.hi == 0;
+        for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
+            if (isolations[k].status != Status::unresolved) continue;
+            isolations[k] = picture_.method->isolate(field, all_, traced.rays.ray(k),
+                                                     picture_.options, tally.counts);
         }
+        if (stopped()) return false;
         const Clock::time_point between = Clock::now();
         tally.tracing += between - start;
-        for (std::size_t k = 0; k < count; ++k) look_at(traced[k], tile.list);
-        commit(index, pass, traced.data(), count);
+        look_at(traced, tile.list);
+        commit(index, pass, traced);
         tally.shading += Clock::now() - between;
         notify(index);
         return true;
     }
 
-    Ray ray(int i, int j) const {
-        return primary_ray(picture_.view, canvas_.frame.width, canvas_.frame.height, i, j);
-    }
-
-    Isolation isolate(const ElementList& list, const Ray& ray, Counts& counts) const {
-        const Field& field = *picture_.field;
-        const Isolation isolation =
-            picture_.method->isolate(field, list, ray, picture_.options, counts);
-        // What the list leaves open may be closed by the elements that it left out.
-        const bool all_were_there = list.rest.lo == 0 && list.rest.hi == 0;
-        if (isolation.status != Status::unresolved || all_were_there) return isolation;
-        return picture_.method->isolate(field, all_, ray, picture_.options, counts);
+    // The rays of the tile's pixels on `stride` but not on `coarser` (0: none is left out), in
+    // groups of 4 x 4 of them, since neighbours walk alike.
+    void gather(TracedTile& traced, std::size_t index, int stride, int coarser) const {
+        const Frame& frame = canvas_.frame;
+        const PixelRect rect = tiles().rect(index);
+        traced.rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
+        traced.rays.count = 0;
+        const int side = 4 * stride;
+        for (int y = rect.y0; y < rect.y1; y += side) {
+            for (int x = rect.x0; x < rect.x1; x += side) {
+                for (int j = y; j < std::min(y + side, rect.y1); j += stride) {
+                    for (int i = x; i < std::min(x + side, rect.x1); i += stride) {
+                        if (coarser > 0 && on_stride(i, j, coarser)) continue;
+                        traced.pixel[traced.rays.count] =
+                            static_cast<std::uint32_t>(frame.at(i, j));
+                        traced.rays.add(
+                            primary_ray(picture_.view, frame.width, frame.height, i, j).direction);
+                    }
+                }
+            }
+        }
     }
 
     // The surface, and its colour in the light, as far as the task wants them.
-    void look_at(Traced& pixel, const ElementList& list) const {
+    void look_at(TracedTile& traced, const ElementList& list) const {
         const bool shaded = settings_.task != Task::trace;
-        pixel.color = picture_.lighting.background;
-        if (!possibly_hit(pixel.isolation.status)) return;
         if (!shaded && canvas_.frame.surface.empty()) return;
-        const Ray r = ray(pixel.i, pixel.j);
-        pixel.surface = picture_.method->surface(*picture_.field, list, r,
-                                                 midpoint(pixel.isolation.t), picture_.options);
-        if (shaded) pixel.color = shade(picture_.lighting, r.direction, pixel.surface);
+        std::array<double, pixels_in_tile> m;
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            const Isolation& isolation = traced.isolations[k];
+            m[k] = possibly_hit(isolation.status) ? midpoint(isolation.t) : infinity<double>;
+        }
+        picture_.method->surface_bundle(*picture_.field, list, traced.rays, picture_.options,
+                                        {m.data(), traced.size()},
+                                        {traced.surfaces.data(), traced.size()});
+        for (std::size_t k = 0; k < traced.size() && shaded; ++k) {
+            traced.colors[k] = possibly_hit(traced.isolations[k].status)
+                                   ? shade(picture_.lighting, traced.rays.ray(k).direction,
+                                           traced.surfaces[k])
+                                   : picture_.lighting.background;
+        }
     }
 
-    void commit(std::size_t index, std::size_t pass, const Traced* traced, std::size_t count) {
+    void commit(std::size_t index, std::size_t pass, const TracedTile& traced) {
         Frame& frame = canvas_.frame;
         TileState& tile = canvas_.tiles[index];
         if (pass == 0) {
@@ -380,17 +403,16 @@ class FrameJob::Work {
             tile.enclosure_width_max = 0;
             tile.unresolved_width_max = 0;
         }
-        for (std::size_t k = 0; k < count; ++k) {
-            const Traced& pixel = traced[k];
-            const std::size_t p = frame.at(pixel.i, pixel.j);
-            const Isolation& isolation = pixel.isolation;
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            const std::size_t p = traced.pixel[k];
+            const Isolation& isolation = traced.isolations[k];
             frame.status[p] = isolation.status;
-            if (settings_.task != Task::trace) frame.color[p] = pixel.color;
+            if (settings_.task != Task::trace) frame.color[p] = traced.colors[k];
             ++tile.pixels[static_cast<std::size_t>(isolation.status)];
             if (!possibly_hit(isolation.status)) continue;
             frame.t_lo[p] = isolation.t.lo;
             frame.t_hi[p] = isolation.t.hi;
-            if (!frame.surface.empty()) frame.surface[p] = pixel.surface;
+            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces[k];
             // Primary rays have length 1, so that a span of t is a length.
             double& widest = isolation.status == Status::unresolved ? tile.unresolved_width_max
                                                                     : tile.enclosure_width_max;
@@ -403,27 +425,23 @@ class FrameJob::Work {
     bool shade_again(std::size_t index, Tally& tally) {
         Frame& frame = canvas_.frame;
         const TileState& tile = canvas_.tiles[index];
-        const PixelRect rect = tiles().rect(index);
         const Clock::time_point start = Clock::now();
-        std::array<Traced, pixels_in_tile> traced;
-        std::size_t count = 0;
-        // Nothing to shade where nothing is traced.
-        const int stride = tile.stride == 0 ? TileGrid::tile_side : tile.stride;
-        for (int j = rect.y0; tile.stride != 0 && j < rect.y1; j += stride) {
+        if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
-            for (int i = rect.x0; i < rect.x1; i += stride) {
-                const std::size_t p = frame.at(i, j);
-                Isolation isolation{frame.status[p], {}};
-                if (possibly_hit(isolation.status)) isolation.t = frame.t(p);
-                traced[count] = {i, j, isolation, {}, {}};
-                look_at(traced[count++], tile.list);
+            TracedTile traced;
+            gather(traced, index, tile.stride, 0);
+            for (std::size_t k = 0; k < traced.size(); ++k) {
+                const std::size_t p = traced.pixel[k];
+                traced.isolations[k] = {frame.status[p], {}};
+                if (possibly_hit(frame.status[p])) traced.isolations[k].t = frame.t(p);
             }
-        }
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t p = frame.at(traced[k].i, traced[k].j);
-            frame.color[p] = traced[k].color;
-            if (!frame.surface.empty() && possibly_hit(traced[k].isolation.status)) {
-                frame.surface[p] = traced[k].surface;
+            look_at(traced, tile.list);
+            for (std::size_t k = 0; k < traced.size(); ++k) {
+                const std::size_t p = traced.pixel[k];
+                frame.color[p] = traced.colors[k];
+                if (!frame.surface.empty() && possibly_hit(frame.status[p])) {
+                    frame.surface[p] = traced.surfaces[k];
+                }
             }
         }
         tally.shading += Clock::now() - start;

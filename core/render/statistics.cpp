@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/render/answers_file.h"
+#include "core/trace/packet.h"
 
 namespace ivory {
 namespace {
@@ -38,7 +39,7 @@ std::string statistics_json(const RenderStatistics& s) {
     json["width"] = s.width;
     json["height"] = s.height;
     json["threads"] = s.threads;
-    json["target"] = target_word;
+    json["target"] = packet_target();
     json["method"] = s.method;
     json["tolerance"] = s.options.tolerance;
     json["camera"] = {{"position", array_of(s.camera.position)},

@@ -38,9 +38,6 @@ struct RenderStatistics {
     std::size_t elements = 0, visible_elements = 0, reached_elements = 0;
 };
 
-// The instruction set that the tracer runs on.
-inline constexpr std::string_view target_word = "scalar";
-
 // One JSON object, the keys of `--stats`, a newline at the end. An unbounded width is null.
 [[nodiscard]] std::string statistics_json(const RenderStatistics& statistics);
 

@@ -15,6 +15,22 @@ SurfacePoint Method::surface(const Field& field, const ElementList& list, const 
     return {outward_normal(at.gradient), at.color};
 }
 
+void Method::isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                            const MethodOptions& options, std::span<Isolation> isolations,
+                            Counts& counts) const {
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        isolations[k] = isolate(field, list, rays.ray(k), options, counts);
+    }
+}
+
+void Method::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                            const MethodOptions& options, std::span<const double> m,
+                            std::span<SurfacePoint> surfaces) const {
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        if (std::isfinite(m[k])) surfaces[k] = surface(field, list, rays.ray(k), m[k], options);
+    }
+}
+
 Vec3d outward_normal(const Vec3d& gradient) {
     // Scaled first, so that no square over- or underflows.
     const double largest =

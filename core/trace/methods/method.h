@@ -7,6 +7,7 @@
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/trace/ray.h"
+#include "core/trace/ray_bundle.h"
 
 namespace ivory {
 
@@ -35,6 +36,16 @@ class Method {
     [[nodiscard]] virtual SurfacePoint surface(const Field& field, const ElementList& list,
                                                const Ray& ray, double m,
                                                const MethodOptions& options) const;
+
+    // The same for all rays of a bundle, for which `list` has to be valid; one isolation for each.
+    virtual void isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                                const MethodOptions& options, std::span<Isolation> isolations,
+                                Counts& counts) const;
+
+    // Normal and colour of each ray at its m; where that is not finite, nothing is written.
+    virtual void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                                const MethodOptions& options, std::span<const double> m,
+                                std::span<SurfacePoint> surfaces) const;
 
   protected:
     Method() = default;

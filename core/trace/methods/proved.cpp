@@ -7,6 +7,7 @@
 #include "core/field/surface.h"
 #include "core/trace/clip.h"
 #include "core/trace/isolate.h"
+#include "core/trace/packet.h"
 
 namespace ivory {
 namespace {
@@ -21,6 +22,12 @@ double power_of_two_below(double x) {
     int exponent = 0;
     std::frexp(x, &exponent);
     return std::ldexp(1.0, exponent - 1);
+}
+
+// Half of what an answer may be wide, in scene units. A coarser grid than 2^-20 widths would save at
+// most one step of the walk, and hide bumps that are thinner than a cell.
+double greatest_cell(const Field& field, double tolerance) {
+    return 0.5 * std::min(tolerance, 0x1p-20) * field.least_width;
 }
 
 }  // namespace
@@ -46,14 +53,9 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     // 3. The first root.
     const double speed =
         std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
-    const auto tolerance = [&](double width) {
-        return options.tolerance * width / speed * (1 - 8 * unit_roundoff);
-    };
-    // A coarser grid would save at most one step of the walk, and hide bumps that are thinner than
-    // a cell.
-    const double finest_needed = std::min(options.tolerance, 0x1p-20) / options.tolerance;
+    const auto in_t = [&](double length) { return length / speed * (1 - 8 * unit_roundoff); };
     const Precision precision{
-        power_of_two_below(0.5 * finest_needed * tolerance(field.least_width))};
+        power_of_two_below(in_t(greatest_cell(field, options.tolerance)))};
     Isolation isolation =
         isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,
                            evaluation_budget, counts);
@@ -64,7 +66,7 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     if (isolation.status == Status::hit && width > 2 * precision.cell_at(isolation.t.hi)) {
         const FieldSample middle =
             sample(field, list, scaled_ray.origin, scaled_ray.direction, midpoint(isolation.t));
-        if (!(width <= tolerance(field.width[middle.strongest])))
+        if (!(width <= in_t(options.tolerance * field.width[middle.strongest])))
             isolation.status = Status::unresolved;
     }
     isolation.t = scaled_ray.unscaled(isolation.t);
@@ -72,6 +74,33 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
         isolation.status = Status::unresolved;  // t is beyond the doubles
     }
     return isolation;
+}
+
+void Proved::isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                            const MethodOptions& options, std::span<Isolation> isolations,
+                            Counts& counts) const {
+    const PacketTracer::Settings settings{options.tolerance,
+                                          greatest_cell(field, options.tolerance)};
+    thread_local PacketTracer packets;
+    packets.isolate(field, list, rays, settings, isolations, counts);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        if (isolations[k].status == Status::unresolved) {
+            isolations[k] = isolate(field, list, rays.ray(k), options, counts);
+        }
+    }
+}
+
+void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                            const MethodOptions& options, std::span<const double> m,
+                            std::span<SurfacePoint> surfaces) const {
+    thread_local PacketTracer packets;
+    packets.surface(field, list, rays, options.tolerance, m, surfaces);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        // NaN: the packets leave it to one ray at a time.
+        if (m[k] < infinity<double> && std::isnan(surfaces[k].normal.x)) {
+            surfaces[k] = surface(field, list, rays.ray(k), m[k], options);
+        }
+    }
 }
 
 }  // namespace ivory

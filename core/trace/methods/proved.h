@@ -1,5 +1,6 @@
 // Ivory's own method: safe steps on tight inclusion functions, a proved sign change at the end.
-// Claims are of exact arithmetic on the doubles of scene and ray. See core/trace/isolate.h.
+// Claims are of exact arithmetic on the doubles of scene and ray. One ray: core/trace/isolate.h.
+// Bundles of them: packets in SIMD (core/trace/packet.h), and what these leave undecided ray by ray.
 #pragma once
 
 #include "core/trace/methods/method.h"
@@ -14,6 +15,12 @@ class Proved final : public Method {
     }
     [[nodiscard]] Isolation isolate(const Field& field, const ElementList& list, const Ray& ray,
                                     const MethodOptions& options, Counts& counts) const override;
+    void isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                        const MethodOptions& options, std::span<Isolation> isolations,
+                        Counts& counts) const override;
+    void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                        const MethodOptions& options, std::span<const double> m,
+                        std::span<SurfacePoint> surfaces) const override;
 };
 
 }  // namespace ivory

@@ -1,0 +1,164 @@
+// A bundle of rays from one origin, and the field on a window [begin, end] of their t: what no ray
+// of the bundle can exceed there, found once and shared by all of them.
+//
+// For every ray origin + t d of the bundle, |d - axis| <= spread: so its point at t lies within
+// t spread of the axis' point. The distance D to any closed set obeys D^2(x) = |x|^2 + (an infimum
+// of affine functions of x): along a line D^2 - t^2 is concave. Hence, with L = end - begin and
+// y = (t - begin) / L,
+//     D^2(t) >= (1 - y) D^2(begin) + y D^2(end) - y (1 - y) L^2                               (1)
+// for every skeleton, with equality for a point: two distances on the axis bound an element's field
+// on the whole window. From the least s = (D / w)^2 come, for each element,
+//     a bound of |F|; elements below a cut leave the list and join an interval that is kept;
+//     bounds of f'' (for a window free of kinks; else of |f'|), as sup of k'' s'^2 + k' s'',
+//         with s'^2 = 4 x^2 / w^2, x = away . d / w, x^2 <= s, and s'' = 2 / w^2 for a point,
+//         0 .. 2 / w^2 for a segment, 2 / w^2 (1 - r rho'') for a circle, 0 <= rho'' <= 1 / rho;
+//     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
+//
+// Lengths in float stages are in units of `unit`, a power of two, and relative to the middle of the
+// window on the axis, so that the digits are spent where the surface is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/field/field.h"
+#include "core/field/support.h"
+#include "core/interval/interval.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+// Rays origin + t d, t >= 0, with |d| and |axis| in 1 -+ 2^-50 and |d - axis| <= spread <= 1/2.
+struct Bundle {
+    Vec3d origin;
+    Vec3d axis;
+    double spread = 0;
+};
+
+// One element as the inner loop wants it. away = p - c - lambda m for a segment (c its end a),
+// lambda the foot p . m extra in 0..1; for a circle c is the centre, m the unit normal, extra the
+// radius.
+template <class Real>
+struct BundleEntry {
+    Real cx, cy, cz;
+    Real inverse_square;  // 1 / w^2
+    Real strength;        // b
+    Real slope;           // 2 b / w^2: F' = slope k'(s) away . d; 0 where `kinked` counts it instead
+    Real mx, my, mz, extra;
+};
+
+// What bounds the sums of one stage, in units of its own: f = sum - T.
+struct StageBounds {
+    double above = 0, below = 0;  // f <= computed + above, f >= computed - below
+    double slope = 0;             // |g' - computed|, g the sum over the fine entries
+};
+
+constexpr std::size_t bundle_groups = 9;  // shape * 3 + kernel
+
+// One window, ready for the inner loops. Entries are sorted by group.
+struct Window {
+    double begin = 0, middle = 0, end = 0;  // t
+    float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
+
+    // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per unit^2 (scaled T).
+    double rise = 0, fall = 0;
+
+    std::vector<BundleEntry<float>> coarse;  // p - c with p relative to the middle
+    std::array<std::uint32_t, bundle_groups> coarse_count{};
+    StageBounds coarse_bounds;  // per unit
+    bool coarse_usable = false;
+
+    std::vector<BundleEntry<double>> fine;  // p - c with p relative to the origin, scene units
+    std::array<std::uint32_t, bundle_groups> fine_count{};
+    std::vector<std::uint32_t> fine_element;  // index into Field
+    StageBounds fine_bounds;                  // per scene unit
+};
+
+// The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
+class BundleField {
+  public:
+    // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
+    // be left out. False: numbers beyond what the bounds are proved for; nothing else may be
+    // called.
+    bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance);
+
+    // The t outside of which every ray is outside of the field's box, and so f < 0; empty: a miss.
+    [[nodiscard]] Interval<double> span() const { return span_; }
+
+    // Calls visit(window) for windows from front to back until it returns false; f < 0 certainly
+    // holds on the parts of span() between them. Which windows there are depends on field, list,
+    // bundle and tolerance alone. Those that wanted(begin, end) denies are passed over.
+    template <class Wanted, class Visit>
+    void for_windows(const Wanted& wanted, const Visit& visit) {
+        if (!is_empty(span_)) descend(0, span_.lo, span_.hi, wanted, visit);
+    }
+
+    [[nodiscard]] double unit() const { return unit_; }
+    // T and all strengths are scaled by this power of two.
+    [[nodiscard]] double scale() const { return scale_; }
+    [[nodiscard]] double threshold() const { return threshold_; }
+    // Pairs of an element and a window that were bounded.
+    [[nodiscard]] std::uint64_t bounded() const { return bounded_; }
+
+  private:
+    struct Element {
+        std::uint32_t index, group;
+        Vec3d from_origin;   // c - o
+        Vec3d m;             // segment: b - a; circle: unit normal
+        double extra;        // segment: 1 / |b - a|^2; circle: radius
+        double length;       // of m, 0 for points and circles
+        double width, inverse_square, strength;  // strength scaled
+        double along, across_square;             // c - o split by the axis
+        double far;                              // >= |c - o| + length + radius
+    };
+    struct Active {
+        std::uint32_t element;
+        double least;    // lower bound of s
+        double most;     // upper bound of s
+        double peak;     // upper bound of k
+        double inverse;  // circle: upper bound of 1 / rho; < 0: rho may be 0
+    };
+    // The elements that matter on [begin, end], and what the others can add.
+    struct Bounded {
+        std::vector<Active> active;
+        double rest_above = 0, rest_below = 0;
+        double rise = 0, fall = 0;
+    };
+
+    // False: f < 0 on all of [t0, t1] for every ray.
+    bool bound(std::size_t depth, double t0, double t1);
+    [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
+    void finish(std::size_t depth, double t0, double t1);
+    [[nodiscard]] double distance(const Element& e, double t) const;
+    void bend(const Element& e, Active& a, double t0, double t1, double& rise, double& fall) const;
+
+    template <class Wanted, class Visit>
+    bool descend(std::size_t depth, double t0, double t1, const Wanted& wanted,
+                 const Visit& visit) {
+        // Float cannot name the ends: what is bounded is a little longer.
+        const double pad = 0x1p-20 * (t1 - t0);
+        if (!wanted(t0, t1) || !bound(depth, t0 - pad, t1 + pad)) return true;
+        const double middle = 0.5 * (t0 + t1);
+        if (middle > t0 && middle < t1 && splits(depth, t0, t1)) {
+            return descend(depth + 1, t0, middle, wanted, visit) &&
+                   descend(depth + 1, middle, t1, wanted, visit);
+        }
+        finish(depth, t0, t1);
+        return visit(static_cast<const Window&>(window_));
+    }
+
+    Bundle bundle_;
+    double spread_ = 0;
+    std::vector<Element> elements_;
+    std::vector<Bounded> bounded_by_depth_;
+    Window window_;
+    Interval<double> span_ = Interval<double>::empty_set();
+    double unit_ = 1, scale_ = 1, threshold_ = 1;
+    double coarse_cut_ = 0, fine_cut_ = 0;
+    double rest_above_ = 0, rest_below_ = 0;
+    std::uint64_t bounded_ = 0;
+};
+
+}  // namespace ivory

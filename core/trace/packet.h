@@ -1,0 +1,56 @@
+// Many rays at a time: windows of a bundle (core/field/bundle.h) from front to back, in each of them
+// safe steps in float and the enclosure of the root in double (core/trace/packet_steps.h).
+//
+// The proof of a hit: f < 0 on every window before, by the sum of upper bounds or by safe steps,
+// and in its own up to a place from which g = f - (what is left out) rises; there a line above f is
+// below 0 up to one grid line and a line below f above 0 from the next one on. The two grid lines
+// are the canonical end of core/trace/isolate.h: those between which the first root lies, however
+// it was found. Each ray's steps depend on the windows and on itself alone, not on its neighbours.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/field/bundle.h"
+#include "core/field/field.h"
+#include "core/field/support.h"
+#include "core/trace/packet_steps.h"
+#include "core/trace/ray.h"
+#include "core/trace/ray_bundle.h"
+
+namespace ivory {
+
+// Reused from bundle to bundle; one for each thread.
+class PacketTracer {
+  public:
+    struct Settings {
+        double tolerance;      // E
+        double greatest_cell;  // of the grid, a length
+    };
+
+    // hit and miss are proved; unresolved (with nothing in t) says that the ray has to be traced by
+    // other means. `list` has to be valid on the bundle.
+    void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
+                 const Settings& settings, std::span<Isolation> isolations, Counts& counts);
+
+    // Normal and colour at m[k] of ray k, where that is finite; a normal of NaN where they have to
+    // be found by other means.
+    void surface(const Field& field, const ElementList& list, const RayBundle& rays,
+                 double tolerance, std::span<const double> m, std::span<SurfacePoint> surfaces);
+
+  private:
+    void take(const RayBundle& rays);
+
+    BundleField bundle_field_;
+    Lanes lanes_;
+    std::vector<std::uint32_t> index_;
+    std::vector<double> t_;
+    std::vector<SurfacePoint> points_;
+};
+
+// The instruction set that the packets run on.
+[[nodiscard]] std::string_view packet_target();
+
+}  // namespace ivory

@@ -1,0 +1,561 @@
+#include "core/trace/packet_steps.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/interval/exp.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
+#include <hwy/foreach_target.h>  // includes this file once for each instruction set
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ivory {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::ScalableTag<float>;
+using D = hn::ScalableTag<double>;
+template <class Tag>
+using V = hn::Vec<Tag>;
+template <class Tag>
+using M = hn::Mask<Tag>;
+
+// e^-s for s >= 0: exp_nearest of core/interval/exp.h, operation by operation; where the machine
+// fuses products with sums it rounds less often, so that its bound holds all the more.
+template <class Tag>
+HWY_INLINE V<Tag> exp_minus(Tag d, V<Tag> s) {
+    using Real = hn::TFromD<Tag>;
+    using C = ExpConstants<Real>;
+    const hn::RebindToUnsigned<Tag> bits;
+    const auto c = [&](Real value) HWY_ATTR { return hn::Set(d, value); };
+    const V<Tag> x = hn::Max(hn::Neg(s), c(C::least));
+    const V<Tag> shifted = hn::MulAdd(x, c(C::inverse_of_ln2), c(C::rounder));
+    const V<Tag> k = hn::Sub(shifted, c(C::rounder));
+    const V<Tag> r = hn::NegMulAdd(k, c(C::ln2_low), hn::NegMulAdd(k, c(C::ln2_high), x));
+    const V<Tag> r2 = hn::Mul(r, r);
+    V<Tag> q;
+    if constexpr (sizeof(Real) == 8) {
+        const auto& t = C::tail;
+        const V<Tag> r4 = hn::Mul(r2, r2);
+        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
+        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
+        const V<Tag> q45 = hn::MulAdd(c(t[5]), r, c(t[4]));
+        const V<Tag> q67 = hn::MulAdd(c(t[7]), r, c(t[6]));
+        const V<Tag> q89 = hn::MulAdd(c(t[9]), r, c(t[8]));
+        q = hn::MulAdd(r4, hn::MulAdd(r4, q89, hn::MulAdd(q67, r2, q45)),
+                       hn::MulAdd(q23, r2, q01));
+    } else {
+        const auto& t = C::tail;
+        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
+        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
+        q = hn::MulAdd(r2, hn::MulAdd(r2, c(t[4]), q23), q01);
+    }
+    const V<Tag> tail = hn::Mul(hn::Mul(r, r2), q);
+    const V<Tag> sum = hn::Add(c(1), hn::Add(r, hn::MulAdd(c(Real(0.5)), r2, tail)));
+    const auto exponent = hn::ShiftLeft<sizeof(Real) == 8 ? 52 : 23>(hn::BitCast(bits, shifted));
+    const V<Tag> scaled = hn::BitCast(d, hn::Add(hn::BitCast(bits, sum), exponent));
+    return hn::IfThenElseZero(hn::Le(s, c(-C::least)), scaled);
+}
+
+template <class Tag>
+struct KernelValue {
+    V<Tag> k, dk;  // k(s), k'(s)
+};
+
+template <KernelKind kind, class Tag>
+HWY_INLINE KernelValue<Tag> kernel(Tag d, V<Tag> s) {
+    using Real = hn::TFromD<Tag>;
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
+    if constexpr (kind == KernelKind::blinn) {
+        const V<Tag> e = exp_minus(d, s);
+        return {e, hn::Neg(e)};
+    } else if constexpr (kind == KernelKind::wyvill) {
+        // (1 - s)^2 (9 - 4 s) / 9 and -2/9 (1 - s) (11 - 6 s)
+        const V<Tag> in = hn::Max(hn::Sub(c(1), s), c(0));
+        const V<Tag> k = hn::Mul(hn::Mul(in, in), hn::Mul(hn::NegMulAdd(c(4), s, c(9)), c(1.0 / 9)));
+        const V<Tag> dk = hn::Mul(hn::Mul(in, c(-2.0 / 9)), hn::NegMulAdd(c(6), s, c(11)));
+        return {k, dk};
+    } else {
+        // 1 - 3 s and -3; beyond s = 1/9: 3/2 (1 - q)^2 and -3/2 (1 - q) / q
+        const V<Tag> q = hn::Sqrt(s);
+        const V<Tag> in = hn::Max(hn::Sub(c(1), q), c(0));
+        const V<Tag> half = hn::Mul(c(1.5), in);
+        const M<Tag> core = hn::Le(s, c(1.0 / 9));
+        return {hn::IfThenElse(core, hn::NegMulAdd(c(3), s, c(1)), hn::Mul(half, in)),
+                hn::IfThenElse(core, c(-3), hn::Div(hn::Neg(half), hn::Max(q, c(1.0 / 4))))};
+    }
+}
+
+template <class Tag>
+struct Vec3v {
+    V<Tag> x, y, z;
+};
+
+template <class Tag>
+HWY_INLINE V<Tag> dot(const Vec3v<Tag>& a, const Vec3v<Tag>& b) {
+    return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
+}
+
+// From the skeleton's nearest point to p, and its square. For a circle
+// away = v - r across / rho, and its square from (rho - r)^2 + h^2.
+template <Shape shape, class Tag>
+HWY_INLINE Vec3v<Tag> away_from(Tag d, const BundleEntry<hn::TFromD<Tag>>& e, const Vec3v<Tag>& p,
+                                V<Tag>& square) {
+    using Real = hn::TFromD<Tag>;
+    Vec3v<Tag> v{hn::Sub(p.x, hn::Set(d, e.cx)), hn::Sub(p.y, hn::Set(d, e.cy)),
+                 hn::Sub(p.z, hn::Set(d, e.cz))};
+    if constexpr (shape == Shape::point) {
+        square = dot<Tag>(v, v);
+        return v;
+    }
+    const Vec3v<Tag> m{hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)};
+    const V<Tag> along = dot<Tag>(v, m);
+    const V<Tag> extra = hn::Set(d, e.extra);
+    if constexpr (shape == Shape::segment) {
+        const V<Tag> foot =
+            hn::Min(hn::Max(hn::Mul(along, extra), hn::Zero(d)), hn::Set(d, Real(1)));
+        const Vec3v<Tag> away{hn::NegMulAdd(foot, m.x, v.x), hn::NegMulAdd(foot, m.y, v.y),
+                              hn::NegMulAdd(foot, m.z, v.z)};
+        square = dot<Tag>(away, away);
+        return away;
+    } else {
+        const Vec3v<Tag> across{hn::NegMulAdd(along, m.x, v.x), hn::NegMulAdd(along, m.y, v.y),
+                                hn::NegMulAdd(along, m.z, v.z)};
+        const V<Tag> rho = hn::Sqrt(dot<Tag>(across, across));
+        const V<Tag> off = hn::Sub(rho, extra);
+        square = hn::MulAdd(off, off, hn::Mul(along, along));
+        // On the axis itself there is no direction: any finite one, which nobody relies on.
+        const V<Tag> share = hn::Div(extra, hn::Max(rho, hn::Set(d, Real(1e-30))));
+        return {hn::NegMulAdd(share, across.x, v.x), hn::NegMulAdd(share, across.y, v.y),
+                hn::NegMulAdd(share, across.z, v.z)};
+    }
+}
+
+template <class Tag>
+struct FieldValue {
+    V<Tag> f, slope;
+};
+
+template <Shape shape, KernelKind kind, class Tag>
+HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std::uint32_t count,
+                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction,
+                          FieldValue<Tag>& sum) {
+    for (const auto* const end = entry + count; entry != end; ++entry) {
+        V<Tag> square;
+        const Vec3v<Tag> away = away_from<shape>(d, *entry, p, square);
+        const KernelValue<Tag> value =
+            kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
+        sum.f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum.f);
+        const V<Tag> slope = hn::Mul(hn::Set(d, entry->slope), value.dk);
+        sum.slope = hn::MulAdd(slope, dot<Tag>(away, direction), sum.slope);
+    }
+}
+
+// Calls visit.operator()<shape, kernel>(first, count) for each group that has entries.
+template <class Counts, class Visit>
+HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
+    std::size_t first = 0;
+    const auto group = [&]<Shape shape, KernelKind kind>() HWY_ATTR {
+        const std::uint32_t count =
+            counts[static_cast<std::size_t>(shape) * 3 + static_cast<std::size_t>(kind)];
+        if (count != 0) visit.template operator()<shape, kind>(first, count);
+        first += count;
+    };
+    const auto kernels = [&]<Shape shape>() HWY_ATTR {
+        group.template operator()<shape, KernelKind::blinn>();
+        group.template operator()<shape, KernelKind::nishimura>();
+        group.template operator()<shape, KernelKind::wyvill>();
+    };
+    kernels.template operator()<Shape::point>();
+    kernels.template operator()<Shape::segment>();
+    kernels.template operator()<Shape::circle>();
+}
+
+template <class Tag, class Entries, class Counts>
+HWY_INLINE FieldValue<Tag> evaluate(Tag d, const Entries& entries, const Counts& counts,
+                                    double threshold, const Vec3v<Tag>& p,
+                                    const Vec3v<Tag>& direction) {
+    using Real = hn::TFromD<Tag>;
+    FieldValue<Tag> sum{hn::Set(d, static_cast<Real>(-threshold)), hn::Zero(d)};
+    for_groups(counts,
+               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+                   add_group<shape, kind>(d, entries.data() + first, count, p, direction, sum);
+               });
+    return sum;
+}
+
+void prepare(Lanes& lanes, const Vec3d& axis) {
+    for (std::size_t k = 0; k < lanes.count; ++k) {
+        lanes.fx[k] = static_cast<float>(lanes.dx[k]);
+        lanes.fy[k] = static_cast<float>(lanes.dy[k]);
+        lanes.fz[k] = static_cast<float>(lanes.dz[k]);
+        lanes.ex[k] = static_cast<float>(lanes.dx[k] - axis.x);
+        lanes.ey[k] = static_cast<float>(lanes.dy[k] - axis.y);
+        lanes.ez[k] = static_cast<float>(lanes.dz[k] - axis.z);
+        lanes.state[k] = Lanes::walking;
+    }
+    // The vectors' last ones are whole: numbers, but nobody's.
+    for (std::size_t k = lanes.count; k < (lanes.count + 15) / 16 * 16; ++k) {
+        lanes.fx[k] = lanes.fy[k] = lanes.fz[k] = 0;
+        lanes.ex[k] = lanes.ey[k] = lanes.ez[k] = 0;
+        lanes.state[k] = Lanes::unused;
+    }
+}
+
+// Every formula below is monotonic in what it is given, and its own few roundings (below 2^-20 in
+// all) are less than what `tight` takes away or adds.
+constexpr float tight = 0x1p-18f;
+constexpr int most_steps = 48, most_guesses = 6;
+
+std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& lanes) {
+    const F d;
+    const hn::RebindToSigned<F> di;
+    const std::size_t N = hn::Lanes(d);
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<float>(value)); };
+    const StageBounds& bounds = window.coarse_bounds;
+    const V<F> above = c(bounds.above * (1 + 0x1p-20)), below = c(bounds.below * (1 + 0x1p-20));
+    const V<F> slope_error = c(bounds.slope * (1 + 0x1p-20));
+    // f'' per unit^2, made larger by what the formulas may lose.
+    const V<F> rise = c(window.rise * unit * unit * (1 + 2 * tight) + 1e-20);
+    const V<F> fall = c(window.fall * unit * unit * (1 + 2 * tight) + 1e-20);
+    const V<F> t_middle = c(window.middle / unit);
+    const V<F> begin = hn::Set(d, window.tau_begin), end = hn::Set(d, window.tau_end);
+    // The sum tau + step is off by half a unit of its last place.
+    const V<F> slack = hn::Set(d, 0x1p-22f * window.tau_end);
+    const V<F> settled = c(0x1p-10 * window.tau_end);
+    const V<F> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
+    std::uint64_t steps = 0;
+
+    for (std::size_t first = 0; first < lanes.count; first += N) {
+        auto state = hn::Load(di, &lanes.state[first]);
+        const auto was_walking = hn::Eq(state, hn::Set(di, Lanes::walking));
+        M<F> walking = hn::RebindMask(d, was_walking);
+        if (hn::AllFalse(d, walking)) continue;
+        const Vec3v<F> direction{hn::Load(d, &lanes.fx[first]), hn::Load(d, &lanes.fy[first]),
+                                 hn::Load(d, &lanes.fz[first])};
+        const Vec3v<F> middle{hn::Mul(t_middle, hn::Load(d, &lanes.ex[first])),
+                              hn::Mul(t_middle, hn::Load(d, &lanes.ey[first])),
+                              hn::Mul(t_middle, hn::Load(d, &lanes.ez[first]))};
+        V<F> tau = begin, guess_lo = zero, guess_hi = zero;
+        M<F> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
+        int guesses = 0;
+        for (int step = 0; step < most_steps; ++step) {
+            steps += hn::CountTrue(d, hn::Or(walking, guessing));
+            const Vec3v<F> p{hn::MulAdd(tau, direction.x, middle.x),
+                             hn::MulAdd(tau, direction.y, middle.y),
+                             hn::MulAdd(tau, direction.z, middle.z)};
+            const FieldValue<F> value =
+                evaluate(d, window.coarse, window.coarse_count, threshold, p, direction);
+
+            // A guess follows Newton, kept where the root is known to be.
+            const V<F> newton =
+                hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), guess_lo), guess_hi);
+            const M<F> settles =
+                hn::And(guessing, hn::Le(hn::Abs(hn::Sub(newton, tau)), settled));
+
+            // f(tau) < 0 must be certain for anything else to be.
+            const V<F> f_hi = hn::Add(value.f, above);
+            const V<F> f_lo = hn::Mul(hn::Sub(value.f, below), one_more);
+            const V<F> slope_lo = hn::Sub(value.slope, slope_error);
+            const V<F> slope_hi = hn::Add(value.slope, slope_error);
+            undecided = hn::Or(undecided, hn::And(walking, hn::Not(hn::Lt(f_hi, zero))));
+            walking = hn::AndNot(undecided, walking);
+
+            // The parabola below f: with a zero in the window, g rises up to there.
+            const V<F> firm = hn::Mul(slope_lo, one_less);
+            const V<F> below_square =
+                hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
+            const V<F> latest =
+                hn::Mul(hn::Div(hn::Mul(c(-2), f_lo),
+                                hn::Add(firm, hn::Sqrt(hn::Max(below_square, zero)))),
+                        one_more);
+            const V<F> latest_tau = hn::Add(tau, latest);
+            const M<F> rises =
+                hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, zero)),
+                                         hn::Le(latest_tau, end)));
+
+            // The parabola above f: up to its zero there is no root.
+            const V<F> a = hn::Mul(f_hi, one_less);
+            const V<F> b = hn::MulAdd(hn::Abs(slope_hi), hn::Set(d, tight), slope_hi);
+            const V<F> root = hn::Sqrt(hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
+            const M<F> upward = hn::Gt(b, zero);
+            const V<F> numerator =
+                hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
+            const V<F> denominator = hn::IfThenElse(upward, hn::Add(root, b), rise);
+            const V<F> safe =
+                hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
+            const M<F> steps_on = hn::AndNot(rises, walking);
+            undecided = hn::Or(undecided, hn::And(steps_on, hn::Le(safe, slack)));
+            const V<F> next = hn::Add(tau, safe);
+
+            // Lanes change their ways.
+            guess_lo = hn::IfThenElse(rises, tau, guess_lo);
+            guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
+            tau = hn::IfThenElse(hn::Or(guessing, rises),
+                                 hn::IfThenElse(rises, hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau), newton), hn::IfThenElse(steps_on, next, tau));
+            found = hn::Or(found, settles);
+            guessing = hn::Or(hn::AndNot(settles, guessing), rises);
+            walking = hn::AndNot(hn::Or(undecided, hn::Ge(tau, end)), steps_on);
+            if (hn::AllFalse(d, walking)) {
+                if (hn::AllFalse(d, guessing) || ++guesses == most_guesses) break;
+            }
+        }
+        found = hn::Or(found, guessing);
+        undecided = hn::Or(undecided, walking);  // no end of steps
+        state = hn::IfThenElse(hn::RebindMask(di, found), hn::Set(di, Lanes::candidate), state);
+        state = hn::IfThenElse(hn::RebindMask(di, undecided), hn::Set(di, Lanes::undecided), state);
+        hn::Store(state, di, &lanes.state[first]);
+        hn::Store(tau, d, &lanes.guess[first]);
+    }
+    return steps;
+}
+
+constexpr std::size_t widest = 8;  // doubles in a vector of any target
+
+// Indices of up to `widest` lanes, and their directions side by side.
+struct Batch {
+    alignas(64) double dx[widest], dy[widest], dz[widest], t[widest];
+    std::uint32_t lane[widest];
+    std::size_t count = 0;
+};
+
+HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
+    const hn::RebindToUnsigned<D> bits;
+    return hn::BitCast(
+        d, hn::And(hn::BitCast(bits, x), hn::Set(bits, std::uint64_t{0x7ff0000000000000})));
+}
+
+// With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
+// f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
+// least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
+std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
+                            Batch& batch, Lanes& lanes) {
+    const D d;
+    const std::size_t N = hn::Lanes(d);
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
+    const StageBounds& bounds = window.fine_bounds;
+    const V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
+    const V<D> zero = hn::Zero(d);
+    for (std::size_t k = batch.count; k < widest; ++k) {
+        batch.dx[k] = batch.dx[0];
+        batch.dy[k] = batch.dy[0];
+        batch.dz[k] = batch.dz[0];
+        batch.t[k] = batch.t[0];
+    }
+    std::uint64_t steps = 0;
+    for (std::size_t first = 0; first < batch.count; first += N) {
+        const Vec3v<D> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first),
+                                 hn::Load(d, batch.dz + first)};
+        // The cell, in units of t: directions scaled so that their largest component lies in
+        // [1, 2) make t half as long here, as in core/trace/clip.h, and so does the cell.
+        const V<D> largest = hn::Max(hn::Max(hn::Abs(direction.x), hn::Abs(direction.y)),
+                                     hn::Abs(direction.z));
+        const V<D> shift = hn::IfThenElse(hn::Lt(largest, c(1)), c(2), c(1));
+        const V<D> sx = hn::Mul(direction.x, shift), sy = hn::Mul(direction.y, shift),
+                   sz = hn::Mul(direction.z, shift);
+        const V<D> square = hn::Add(hn::Add(hn::Mul(sx, sx), hn::Mul(sy, sy)), hn::Mul(sz, sz));
+        const V<D> speed = hn::Mul(hn::Sqrt(square), c(1 + 8 * 0x1p-53));
+        const V<D> cell = hn::Mul(
+            greatest_power_of_two(
+                d, hn::Mul(hn::Div(c(half_width), speed), c(1 - 8 * 0x1p-53))),
+            shift);
+
+        V<D> m = hn::Load(d, batch.t + first);
+        V<D> lo = zero, hi = zero;
+        M<D> open = hn::FirstN(d, batch.count - first);
+        M<D> done = hn::FirstN(d, 0);
+        for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
+            steps += hn::CountTrue(d, open);
+            const Vec3v<D> p{hn::Mul(m, direction.x), hn::Mul(m, direction.y),
+                             hn::Mul(m, direction.z)};
+            const FieldValue<D> value =
+                evaluate(d, window.fine, window.fine_count, threshold, p, direction);
+            const V<D> f_hi = hn::Add(value.f, c(bounds.above));
+            const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
+            const V<D> size = hn::Max(hn::Abs(f_lo), hn::Abs(f_hi));
+            const V<D> delta = hn::Div(hn::Mul(c(2.001), size), value.slope);
+            const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
+            const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
+            const V<D> slope_hi = hn::Mul(hn::Add(value.slope, bend), c(1 + 0x1p-40));
+            // Then size / slope_lo < delta.
+            const M<D> firm =
+                hn::And(hn::And(hn::Gt(value.slope, zero),
+                                hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
+                        hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
+                                hn::Le(hn::Add(m, delta), c(window.end))));
+            // The zeros of the outer lines, each with its steeper or flatter slope.
+            const V<D> first_x = hn::Div(
+                hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), slope_lo, slope_hi));
+            const V<D> last_x = hn::Div(
+                hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), slope_hi, slope_lo));
+            const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
+            const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
+            const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
+            const V<D> line = hn::Mul(hn::Floor(hn::Div(from, cell)), cell);
+            const V<D> next = hn::Add(line, cell);
+            const M<D> decided =
+                hn::And(hn::And(open, firm),
+                        hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
+                                // finer cells than 8 ulp are made by other means
+                                hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
+            lo = hn::IfThenElse(decided, line, lo);
+            hi = hn::IfThenElse(decided, next, hi);
+            done = hn::Or(done, decided);
+            // The next m lies within delta of this one, so that g still rises up to there.
+            open = hn::AndNot(decided, hn::And(open, firm));
+            m = hn::IfThenElse(open, hn::Sub(m, hn::Div(value.f, value.slope)), m);
+        }
+        alignas(64) double lo_out[widest], hi_out[widest];
+        hn::Store(lo, d, lo_out);
+        hn::Store(hi, d, hi_out);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, done, bits);
+        for (std::size_t k = 0; k < N && first + k < batch.count; ++k) {
+            const std::uint32_t lane = batch.lane[first + k];
+            const bool is_hit = (bits[k / 8] >> (k % 8) & 1) != 0;
+            lanes.state[lane] = is_hit ? Lanes::hit : Lanes::undecided;
+            lanes.t_lo[lane] = lo_out[k];
+            lanes.t_hi[lane] = hi_out[k];
+        }
+    }
+    batch.count = 0;
+    return steps;
+}
+
+std::uint64_t enclose(const Window& window, double threshold, double unit, double half_width,
+                      Lanes& lanes) {
+    Batch batch;
+    std::uint64_t steps = 0;
+    for (std::size_t k = 0; k < lanes.count; ++k) {
+        if (lanes.state[k] != Lanes::candidate) continue;
+        const std::size_t at = batch.count++;
+        batch.lane[at] = static_cast<std::uint32_t>(k);
+        batch.dx[at] = lanes.dx[k];
+        batch.dy[at] = lanes.dy[k];
+        batch.dz[at] = lanes.dz[k];
+        batch.t[at] = window.middle + static_cast<double>(lanes.guess[k]) * unit;
+        if (batch.count == widest) {
+            steps += enclose_batch(window, threshold, half_width, batch, lanes);
+        }
+    }
+    if (batch.count > 0) steps += enclose_batch(window, threshold, half_width, batch, lanes);
+    return steps;
+}
+
+struct SurfaceSum {
+    Vec3v<D> gradient, color;
+    V<D> weight;
+};
+
+template <Shape shape, KernelKind kind>
+HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::uint32_t* element,
+                            std::uint32_t count, const Field& field, const Vec3v<D>& p,
+                            SurfaceSum& sum, M<D>& defined) {
+    for (std::uint32_t k = 0; k < count; ++k) {
+        V<D> square;
+        const Vec3v<D> away = away_from<shape>(d, entry[k], p, square);
+        const KernelValue<D> value =
+            kernel<kind>(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
+        const V<D> slope =
+            hn::Mul(hn::Set(d, 2 * entry[k].strength * entry[k].inverse_square), value.dk);
+        sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
+                        hn::MulAdd(slope, away.y, sum.gradient.y),
+                        hn::MulAdd(slope, away.z, sum.gradient.z)};
+        if constexpr (shape == Shape::circle) {
+            // Near its axis the direction is lost.
+            const Vec3v<D> m{hn::Set(d, entry[k].mx), hn::Set(d, entry[k].my),
+                             hn::Set(d, entry[k].mz)};
+            const Vec3v<D> v{hn::Sub(p.x, hn::Set(d, entry[k].cx)),
+                             hn::Sub(p.y, hn::Set(d, entry[k].cy)),
+                             hn::Sub(p.z, hn::Set(d, entry[k].cz))};
+            const V<D> along = dot<D>(v, m);
+            const V<D> across_square = hn::NegMulAdd(along, along, dot<D>(v, v));
+            const V<D> least = hn::Set(d, 1e-12 / entry[k].inverse_square);
+            defined = hn::And(defined, hn::Or(hn::Gt(across_square, least),
+                                              hn::Eq(value.dk, hn::Zero(d))));
+        }
+        if (entry[k].strength > 0) {
+            const Color& color = field.color[element[k]];
+            const V<D> part = hn::Mul(hn::Set(d, entry[k].strength), value.k);
+            sum.color = {hn::MulAdd(part, hn::Set(d, color.x), sum.color.x),
+                         hn::MulAdd(part, hn::Set(d, color.y), sum.color.y),
+                         hn::MulAdd(part, hn::Set(d, color.z), sum.color.z)};
+            sum.weight = hn::Add(sum.weight, part);
+        }
+    }
+}
+
+void surface(const Window& window, const Field& field, const Lanes& lanes,
+             std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface) {
+    const D d;
+    const std::size_t N = hn::Lanes(d);
+    for (std::size_t first = 0; first < index.size(); first += N) {
+        alignas(64) double dx[widest], dy[widest], dz[widest], at[widest];
+        for (std::size_t k = 0; k < N; ++k) {
+            const std::size_t item = std::min(first + k, index.size() - 1);
+            const std::uint32_t lane = index[item];
+            dx[k] = lanes.dx[lane];
+            dy[k] = lanes.dy[lane];
+            dz[k] = lanes.dz[lane];
+            at[k] = t[item];
+        }
+        const V<D> m = hn::Load(d, at);
+        const Vec3v<D> p{hn::Mul(m, hn::Load(d, dx)), hn::Mul(m, hn::Load(d, dy)),
+                         hn::Mul(m, hn::Load(d, dz))};
+        const V<D> zero = hn::Zero(d);
+        SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
+        M<D> defined = hn::FirstN(d, N);
+        for_groups(window.fine_count, [&]<Shape shape, KernelKind kind>(
+                                          std::size_t group, std::uint32_t count) HWY_ATTR {
+            add_surface<shape, kind>(d, window.fine.data() + group,
+                                     window.fine_element.data() + group, count, field, p, sum,
+                                     defined);
+        });
+        const V<D> length = hn::Sqrt(dot<D>(sum.gradient, sum.gradient));
+        const V<D> inverse = hn::Div(hn::Set(d, -1.0), length);
+        const V<D> share = hn::Div(hn::Set(d, 1.0), sum.weight);
+        defined = hn::And(defined, hn::And(hn::Gt(length, hn::Set(d, 1e-100)),
+                                           hn::Gt(sum.weight, hn::Set(d, 1e-100))));
+        const V<D> nan = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+        alignas(64) double out[6][widest];
+        hn::Store(hn::IfThenElse(defined, hn::Mul(sum.gradient.x, inverse), nan), d, out[0]);
+        hn::Store(hn::Mul(sum.gradient.y, inverse), d, out[1]);
+        hn::Store(hn::Mul(sum.gradient.z, inverse), d, out[2]);
+        hn::Store(hn::Mul(sum.color.x, share), d, out[3]);
+        hn::Store(hn::Mul(sum.color.y, share), d, out[4]);
+        hn::Store(hn::Mul(sum.color.z, share), d, out[5]);
+        for (std::size_t k = 0; k < N && first + k < index.size(); ++k) {
+            surface[first + k] = {{out[0][k], out[1][k], out[2][k]},
+                                  {out[3][k], out[4][k], out[5][k]}};
+        }
+    }
+}
+
+}  // namespace
+
+const PacketSteps& steps_of_target() {
+    static const PacketSteps steps{prepare, walk, enclose, surface,
+                                   hwy::TargetName(HWY_TARGET)};
+    return steps;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace ivory
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ivory {
+
+HWY_EXPORT(steps_of_target);
+
+const PacketSteps& packet_steps() {
+    static const PacketSteps& steps = HWY_DYNAMIC_DISPATCH(steps_of_target)();
+    return steps;
+}
+
+}  // namespace ivory
+#endif

@@ -1,0 +1,66 @@
+// The inner loops of the packet tracer, in SIMD: one body for all instruction sets, the best one
+// that the machine has chosen at run time (Google Highway).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/field/bundle.h"
+#include "core/field/field.h"
+#include "core/interval/interval.h"
+#include "core/math/vec3.h"
+#include "core/trace/ray.h"
+
+namespace ivory {
+
+// One ray of a bundle and what is known of it, as structure of arrays.
+struct Lanes {
+    static constexpr std::size_t capacity = 256;
+
+    enum State : std::int32_t {
+        walking,    // f < 0 on [0, t) so far
+        candidate,  // and, in this window, g rises from there to a root near `guess`
+        hit,        // done: t_lo, t_hi
+        undecided,  // to be traced by other means
+        unused,
+    };
+
+    std::size_t count = 0;
+    alignas(64) std::array<double, capacity> dx, dy, dz;  // directions
+    alignas(64) std::array<float, capacity> fx, fy, fz;   // the same, rounded
+    alignas(64) std::array<float, capacity> ex, ey, ez;   // direction - axis, rounded
+    alignas(64) std::array<std::int32_t, capacity> state;
+    alignas(64) std::array<float, capacity> guess;         // tau
+    alignas(64) std::array<double, capacity> t_lo, t_hi;
+};
+
+struct PacketSteps {
+    // dx, dy, dz stand; fills the rest for a bundle with that axis. State: walking.
+    void (*prepare)(Lanes& lanes, const Vec3d& axis);
+
+    // Safe steps of every walking lane from the window's begin to its end, in float: lanes that
+    // come to a root become candidates, those that float cannot decide undecided. Counts pairs of
+    // a lane and a step.
+    std::uint64_t (*walk)(const Window& window, double threshold, double unit, Lanes& lanes);
+
+    // Encloses the candidates' roots in double, on the grid whose cell is the greatest power of
+    // two below `half_width` / |d| in the units of core/trace/isolate.h: they become hits, or
+    // undecided.
+    std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
+                             Lanes& lanes);
+
+    // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
+    // or not defined, or no F_i is above 0, the normal's x is NaN.
+    void (*surface)(const Window& window, const Field& field, const Lanes& lanes,
+                    std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface);
+
+    std::string_view target;  // the instruction set
+};
+
+// For this machine.
+[[nodiscard]] const PacketSteps& packet_steps();
+
+}  // namespace ivory

@@ -1,0 +1,31 @@
+// Rays of one origin in a narrow cone, as structure of arrays: the primary rays of a tile.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/field/bundle.h"
+#include "core/trace/ray.h"
+
+namespace ivory {
+
+struct RayBundle {
+    static constexpr std::size_t capacity = 256;
+
+    Bundle bundle;          // holds all rays; their directions have length 1 within 2^-50
+    std::size_t count = 0;  // 0 .. capacity
+    alignas(64) std::array<double, capacity> dx, dy, dz;
+
+    [[nodiscard]] std::size_t size() const { return count; }
+    [[nodiscard]] Ray ray(std::size_t k) const {
+        return {bundle.origin, {dx[k], dy[k], dz[k]}};
+    }
+    void add(const Vec3d& direction) {
+        dx[count] = direction.x;
+        dy[count] = direction.y;
+        dz[count] = direction.z;
+        ++count;
+    }
+};
+
+}  // namespace ivory
