@@ -18,8 +18,13 @@ constexpr double bend_limit = 2;
 
 constexpr double coarse_cut_share = 0x1p-26, fine_cut_share = 0x1p-40;
 
-// Windows are never finer than this share of the span.
-constexpr std::size_t greatest_depth = 24;
+// And until what is only known of |f'|, near the axes of circles, could change f by no more than this
+// share of T; but not below this share of the least width.
+constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
+constexpr std::size_t greatest_depth = 30;
+
+// The s'' of a circle is bounded where r / rho stays below this; else the element counts as kinked.
+constexpr double greatest_outward = 32;
 
 // sup of x e^-x^2 and of x^3 e^-x^2 for x >= 0 are 0.4289 and 0.4099.
 constexpr double unit_slope = 0.43;
@@ -116,6 +121,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     threshold_ = field.threshold * scale_;
     std::frexp(field.greatest_width, &exponent);
     unit_ = std::ldexp(1.0, exponent - 1);
+    least_width_ = field.least_width;
     coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     rest_above_ = std::max(list.rest.hi, 0.0) * scale_ * more;
@@ -231,11 +237,15 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
     const double slack = static_cast<double>(here.active.size() + 4) * 0x1p-52 * (sum + threshold_);
     if (above + here.rest_above + slack < threshold_) return false;
 
-    here.rise = here.fall = 0;
+    here.rise = here.fall = here.kinks = 0;
     for (Active& a : here.active) {
         const Element& e = elements_[a.element];
         double rise = 0, fall = 0;
         bend(e, a, t0, t1, rise, fall);
+        if (a.inverse < 0) {
+            here.kinks += 2 * std::abs(e.strength) / e.width *
+                          slope_of(kernel_of(e.group), a.least, a.peak);
+        }
         here.rise += (e.strength > 0 ? rise : fall) * std::abs(e.strength) * e.inverse_square;
         here.fall += (e.strength > 0 ? fall : rise) * std::abs(e.strength) * e.inverse_square;
     }
@@ -260,8 +270,11 @@ void BundleField::bend(const Element& e, Active& a, double t0, double t1, double
         const double rho = least_between(rho_at(t0), rho_at(t1), (t1 - t0) * more) -
                            (e.far + t1) * margin - t1 * spread_ * more;
         const double inverse = 1 / rho;
-        a.inverse = rho > 0 && inverse * e.width < 1e3 ? inverse * more : -1;
-        if (e.extra == 0) a.inverse = 0;
+        if (e.extra == 0) {
+            a.inverse = 0;
+        } else {
+            a.inverse = rho > 0 && e.extra * inverse < greatest_outward ? inverse * more : -1;
+        }
         if (a.inverse < 0) return;
         outward = e.extra * a.inverse;
     }
@@ -307,7 +320,9 @@ void BundleField::bend(const Element& e, Active& a, double t0, double t1, double
 bool BundleField::splits(std::size_t depth, double t0, double t1) const {
     const Bounded& here = bounded_by_depth_[depth];
     const double L = t1 - t0;
-    return depth < greatest_depth && std::max(here.rise, here.fall) * L * L > bend_limit * threshold_;
+    return depth < greatest_depth && L > least_length * least_width_ &&
+           (std::max(here.rise, here.fall) * L * L > bend_limit * threshold_ ||
+            here.kinks * L > kink_limit * threshold_);
 }
 
 void BundleField::finish(std::size_t depth, double t0, double t1) {

@@ -125,6 +125,7 @@ class BundleField {
         std::vector<Active> active;
         double rest_above = 0, rest_below = 0;
         double rise = 0, fall = 0;
+        double kinks = 0;  // upper bound of the |f'| of kinked elements
     };
 
     // False: f < 0 on all of [t0, t1] for every ray.
@@ -155,7 +156,7 @@ class BundleField {
     std::vector<Bounded> bounded_by_depth_;
     Window window_;
     Interval<double> span_ = Interval<double>::empty_set();
-    double unit_ = 1, scale_ = 1, threshold_ = 1;
+    double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double coarse_cut_ = 0, fine_cut_ = 0;
     double rest_above_ = 0, rest_below_ = 0;
     std::uint64_t bounded_ = 0;

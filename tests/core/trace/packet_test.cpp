@@ -52,6 +52,7 @@ struct Case {
     tools::SceneRecipe recipe;
     double tolerance;
     double least_decided;  // share of the rays
+    bool hits = true;      // whether packets can prove any: not with cells below 8 ulp of t
 };
 
 class PacketOfRays : public testing::TestWithParam<Case> {};
@@ -106,7 +107,7 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
             }
         }
     }
-    EXPECT_GT(hits, 0);
+    EXPECT_EQ(hits > 0, c.hits);
     EXPECT_GT(judged, 0);
     EXPECT_GE(decided, c.least_decided * rays_traced);
     std::printf("%d rays, %d decided by packets, %d hits, %d judged by the reference; %s\n",
@@ -119,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"many", {.elements = 60}, 1e-6, 0.5},
                     Case{"coarse", {.elements = 8}, 0.1, 0.5},
                     Case{"fine", {.elements = 8}, 1e-12, 0.2},
-                    Case{"finest", {.elements = 4}, 1e-15, 0.1},
+                    Case{"finest", {.elements = 4}, 1e-15, 0.1, false},
                     Case{"shifted", {.elements = 8, .shift = 1e6}, 1e-6, 0.2},
                     Case{"small", {.elements = 8, .scale = 1e-6}, 1e-9, 0.5},
                     Case{"large", {.elements = 8, .scale = 1e6}, 1e-9, 0.5},
