@@ -77,7 +77,6 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     bundle_ = bundle;
     spread_ = bundle.spread * more + 0x1p-49;
     span_ = Interval<double>::empty_set();
-    bounded_ = 0;
     elements_.clear();
     if (!field.compact || !(bundle.spread <= 0.5)) return false;
     const Vec3d& o = bundle.origin;
@@ -201,7 +200,6 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
     here.rest_above = parent != nullptr ? parent->rest_above : rest_above_;
     here.rest_below = parent != nullptr ? parent->rest_below : rest_below_;
     const std::size_t count = parent != nullptr ? parent->active.size() : elements_.size();
-    bounded_ += count;
 
     const double L = (t1 - t0) * more;
     const double aside = t1 * spread_ * more;

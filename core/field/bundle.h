@@ -99,8 +99,6 @@ class BundleField {
     // T and all strengths are scaled by this power of two.
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double threshold() const { return threshold_; }
-    // Pairs of an element and a window that were bounded.
-    [[nodiscard]] std::uint64_t bounded() const { return bounded_; }
 
   private:
     struct Element {
@@ -159,7 +157,6 @@ class BundleField {
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double coarse_cut_ = 0, fine_cut_ = 0;
     double rest_above_ = 0, rest_below_ = 0;
-    std::uint64_t bounded_ = 0;
 };
 
 }  // namespace ivory

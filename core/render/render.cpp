@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/render/shade_lanes.h"
+
 namespace ivory {
 namespace {
 
@@ -357,21 +359,25 @@ class FrameJob::Work {
         const Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
         traced.rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
-        traced.rays.count = 0;
+        std::size_t count = 0;
+        alignas(64) std::array<double, pixels_in_tile> column, row;
         const int side = 4 * stride;
         for (int y = rect.y0; y < rect.y1; y += side) {
             for (int x = rect.x0; x < rect.x1; x += side) {
                 for (int j = y; j < std::min(y + side, rect.y1); j += stride) {
                     for (int i = x; i < std::min(x + side, rect.x1); i += stride) {
                         if (coarser > 0 && on_stride(i, j, coarser)) continue;
-                        traced.pixel[traced.rays.count] =
-                            static_cast<std::uint32_t>(frame.at(i, j));
-                        traced.rays.add(
-                            primary_ray(picture_.view, frame.width, frame.height, i, j).direction);
+                        column[count] = i;
+                        row[count] = j;
+                        traced.pixel[count++] = static_cast<std::uint32_t>(frame.at(i, j));
                     }
                 }
             }
         }
+        traced.rays.count = count;
+        primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
+                           row.data(), traced.rays.dx.data(), traced.rays.dy.data(),
+                           traced.rays.dz.data());
     }
 
     // The surface, and its colour in the light, as far as the task wants them.
@@ -386,11 +392,21 @@ class FrameJob::Work {
         picture_.method->surface_bundle(*picture_.field, list, traced.rays, picture_.options,
                                         {m.data(), traced.size()},
                                         {traced.surfaces.data(), traced.size()});
-        for (std::size_t k = 0; k < traced.size() && shaded; ++k) {
-            traced.colors[k] = possibly_hit(traced.isolations[k].status)
-                                   ? shade(picture_.lighting, traced.rays.ray(k).direction,
-                                           traced.surfaces[k])
-                                   : picture_.lighting.background;
+        if (!shaded) return;
+        ShadingLanes lanes;
+        std::array<std::uint16_t, pixels_in_tile> lane;
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            traced.colors[k] = picture_.lighting.background;
+            if (!possibly_hit(traced.isolations[k].status)) continue;
+            lane[lanes.count] = static_cast<std::uint16_t>(k);
+            lanes.add({traced.rays.dx[k], traced.rays.dy[k], traced.rays.dz[k]},
+                      traced.surfaces[k]);
+        }
+        const std::size_t hits = lanes.count;
+        if (hits == 0) return;
+        shade_lanes(picture_.lighting, lanes);
+        for (std::size_t k = 0; k < hits; ++k) {
+            traced.colors[lane[k]] = to_srgb({lanes.r[k], lanes.g[k], lanes.b[k]});
         }
     }
 

@@ -1,5 +1,5 @@
 // Light and colour: from the surface at a point to the bytes of a pixel. Nothing but + - * / and
-// square roots, so that every machine draws the same.
+// square roots (core/render/shade_lanes.h), so that every machine draws the same.
 #pragma once
 
 #include <vector>

@@ -45,7 +45,6 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                 walked * window.coarse.size() + enclosed * window.fine.size();
             return std::any_of(begin, end, state_is(Lanes::walking));
         });
-    counts.element_evaluations += bundle_field_.bounded();
     for (std::size_t k = 0; k < rays.count; ++k) {
         switch (lanes_.state[k]) {
             case Lanes::walking:
@@ -97,6 +96,9 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         });
 }
 
-std::string_view packet_target() { return packet_steps().target; }
+std::string_view packet_target() {
+    const std::string_view target = packet_steps().target;
+    return target.starts_with("AVX3") ? "AVX-512" : target;  // Highway's name for it
+}
 
 }  // namespace ivory

@@ -5,6 +5,8 @@
 
 #include "core/interval/exp.h"
 
+// Of no use here beside SSE2, SSE4, AVX2 and AVX-512, and each takes its time to build.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set

@@ -1,5 +1,6 @@
 // The keys of `--stats`.
 #include "core/render/statistics.h"
+#include "core/trace/packet.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,8 @@ TEST(Statistics, HaveAllKeys) {
     EXPECT_EQ(json.at("width"), 30);
     EXPECT_EQ(json.at("height"), 20);
     EXPECT_EQ(json.at("threads"), 3);
-    EXPECT_EQ(json.at("target"), "scalar");
+    EXPECT_EQ(json.at("target"), packet_target());
+    EXPECT_NE(json.at("target"), "");
     EXPECT_EQ(json.at("method"), "proved");
     EXPECT_EQ(json.at("camera"), Json::parse(R"({"position": [0, 0, 8], "target": [0, 0.5, 0],
                                                  "up": [0, 1, 0], "fov": 40})"));
