@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -371,6 +372,13 @@ TEST(Check, FindsEachFault) {
     EXPECT_EQ(fault(ray, Status::miss, 0, 0), Fault::wrong_miss);
     EXPECT_EQ(fault(ray, Status::unresolved, 1, 30), Fault::none);
     EXPECT_EQ(fault(ray, Status::unresolved, 20, 30), Fault::wrong_bracket);
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(fault(ray, Status::unresolved, 1, infinity), Fault::none);
+    EXPECT_EQ(fault(ray, Status::unresolved, 20, infinity), Fault::wrong_bracket);
+    EXPECT_EQ(fault(ray, Status::unresolved, infinity, infinity), Fault::malformed);
+    EXPECT_EQ(fault(ray, Status::hit, 1, infinity), Fault::malformed);
+    EXPECT_EQ(fault(ray, Status::claimed_hit, 1, infinity), Fault::malformed);
+    EXPECT_EQ(fault(beside, Status::unresolved, 1, infinity), Fault::none);
     EXPECT_EQ(fault(beside, Status::miss, 0, 0), Fault::none);
     EXPECT_EQ(fault(beside, Status::hit, root - 1e-12, root + 1e-12), Fault::wrong_hit);
     EXPECT_EQ(fault(beside, Status::unresolved, 1, 30), Fault::none);
@@ -405,6 +413,28 @@ TEST(Check, KnowsWhichRaysAreDecidable) {
     EXPECT_TRUE(is_decidable(radius * (1 + 1e-6)));
     EXPECT_FALSE(is_decidable(radius * (1 + 1e-12)));
     EXPECT_FALSE(is_decidable(radius * (1 - 1e-12)));
+}
+
+// Whatever a scene's scale: no ray that a file of rays may not hold.
+TEST(NastyRays, AreRaysAtExtremeScales) {
+    for (const double scale : {1e-150, 1e-90, 1e90, 1e150}) {
+        tools::SceneRecipe recipe;
+        recipe.scale = scale;
+        const Scene scene = tools::random_scene(recipe, 5);
+        std::size_t count = 0;
+        for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
+            for (const Ray& ray :
+                 tools::nasty_rays(scene, static_cast<tools::RayKind>(kind), 20, 9)) {
+                ++count;
+                double sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) sum += ray.origin[k] * 0 + ray.direction[k] * 0;
+                EXPECT_EQ(sum, 0) << tools::ray_kind_words[kind] << " at " << scale;
+                EXPECT_NE(ray.direction, (Vec3d{0, 0, 0}))
+                    << tools::ray_kind_words[kind] << " at " << scale;
+            }
+        }
+        EXPECT_GE(count, 60u) << "at " << scale;
+    }
 }
 
 // Every kind of nasty ray gets an outcome on every kind of scene but the touching ones.

@@ -213,7 +213,9 @@ Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, con
     const Interval<double>& t = answer.isolation.t;
     const bool has_bracket =
         status == Status::hit || status == Status::unresolved || status == Status::claimed_hit;
-    if (has_bracket && !(0 <= t.lo && t.lo <= t.hi && std::isfinite(t.hi))) {
+    const bool endless = status == Status::unresolved && std::isinf(t.hi);
+    if (has_bracket &&
+        !(0 <= t.lo && t.lo <= t.hi && std::isfinite(t.lo) && (std::isfinite(t.hi) || endless))) {
         verdict.fault = Fault::malformed;
         return verdict;
     }
@@ -225,6 +227,15 @@ Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, con
         verdict.undecided = unknown;
         if (reference.outcome == Outcome::hit) {
             verdict.fault = status == Status::miss ? Fault::wrong_miss : Fault::false_claim;
+        }
+        return verdict;
+    }
+
+    if (endless) {  // without a middle there is no normal and no colour to judge
+        verdict.bracket = t.hi;
+        verdict.undecided = unknown;
+        if (reference.outcome == Outcome::hit && reference.t.hi < Real(t.lo)) {
+            verdict.fault = Fault::wrong_bracket;
         }
         return verdict;
     }

@@ -10,7 +10,7 @@ namespace ivory::reference {
 
 enum class Fault {
     none,
-    malformed,      // not 0 <= t_lo <= t_hi < infinity
+    malformed,      // not 0 <= t_lo <= t_hi, or one that is infinite; an unresolved t_hi may be
     wrong_hit,      // no root in [t_lo, t_hi], or one before
     wrong_miss,     // there is a root
     wrong_bracket,  // unresolved, and the first root is elsewhere
@@ -29,10 +29,10 @@ struct Verdict {
     double normal_error = nothing;  // |n - exact n| at m; NaN where not to be judged
     double color_error = nothing;   // greatest of the three differences at m; likewise
     double root_error = nothing;    // |m - root| |d|, a length, where both know a root
-    double bracket = nothing;       // (t_hi - t_lo) |d| / w, w as for the tolerance
+    double bracket = nothing;       // (t_hi - t_lo) |d| / w, w as for the tolerance; or infinity
 };
 
-// Normal and colour are judged for whatever has a bracket, at m = (t_lo + t_hi) / 2 exactly. The
+// Normal and colour are judged for whatever has a finite bracket, at m = (t_lo + t_hi) / 2 exactly. The
 // normal is not judged where the gradient is near zero or undefined: |grad f| below 1e-4 of the sum
 // of |grad F_i|, or below 1e-6 T / w, or within 1e-6 w of the axis of a circle that adds to it. The
 // colour is judged where the positive F_i sum to T / 2 or more.

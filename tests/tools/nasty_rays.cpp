@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -30,6 +32,15 @@ Vec3d beside(const Vec3d& v) {
     return times(1 / length(n), n);
 }
 
+bool finite(const Vec3d& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Scenes of extreme scales lose directions and origins to underflow and overflow.
+bool is_ray(const Ray& ray) {
+    return finite(ray.origin) && finite(ray.direction) && ray.direction != Vec3d{0, 0, 0};
+}
+
 class Maker {
   public:
     Maker(const Scene& scene, std::uint64_t seed) : field_(scene), random_(seed) {
@@ -51,6 +62,7 @@ class Maker {
     std::vector<Ray> make(RayKind kind, std::size_t count) {
         // A kind may find nothing, in a scene without a surface for example.
         for (std::size_t tries = 0; rays_.size() < count && tries < 4 * count; ++tries) {
+            const auto before = static_cast<std::ptrdiff_t>(rays_.size());
             switch (kind) {
                 case RayKind::random:
                     rays_.push_back(random_ray());
@@ -80,6 +92,8 @@ class Maker {
                     far();
                     break;
             }
+            rays_.erase(std::remove_if(rays_.begin() + before, rays_.end(), std::not_fn(is_ray)),
+                        rays_.end());
         }
         if (rays_.size() > count) rays_.resize(count);
         return std::move(rays_);
@@ -134,7 +148,9 @@ class Maker {
         const Vec3d o = viewpoint(), d = from_to(o, target());
         return {o, random_.chance(0.5) ? times(1 / length(d), d) : d};
     }
-    bool hits(const Ray& ray) { return first_root(field_, ray).outcome == reference::Outcome::hit; }
+    bool hits(const Ray& ray) {
+        return is_ray(ray) && first_root(field_, ray).outcome == reference::Outcome::hit;
+    }
 
     // Between a ray that hits and one that misses lies one that just touches.
     void tangent() {
@@ -247,6 +263,7 @@ class Maker {
 
     void surface() {
         const Ray ray = random_ray();
+        if (!is_ray(ray)) return;
         const reference::ReferenceAnswer answer = first_root(field_, ray);
         if (answer.outcome != reference::Outcome::hit) return;
         const Vec3d o = plus(ray.origin, answer.t.lo.to_double(), ray.direction);
