@@ -303,6 +303,25 @@ TEST(CommandLine, TraceAnswersInOrderForAnyNumberOfThreads) {
     for (std::size_t k = 8; k < lines.size(); ++k) ASSERT_EQ(lines[k], lines[k - 7]);
 }
 
+TEST(CommandLine, AnswersBeforeABrokenRayStandForAnyNumberOfThreads) {
+    const TemporaryFolder folder;
+    std::string rays;
+    for (int n = 0; n < 5000; ++n) rays += std::to_string(n % 7 * 0.4 - 1.2) + " 0 8 0 0 -1\n";
+    put_bytes(folder / "whole", rays);
+    put_bytes(folder / "broken", rays + "0 0 8 0 0 0\n0 0 8 0 0\n0 0 8 0 0 -1\n");
+    const Finished whole = run_ivory({"trace", figure_1, "--rays", (folder / "whole").string()});
+    EXPECT_EQ(lines_of(whole.out).size(), 5001u);
+    for (const char* threads : {"1", "2", "6"}) {
+        const Finished run = run_ivory({"trace", figure_1, "--threads", threads},
+                                       {(folder / "broken").string(), ""});
+        EXPECT_EQ(run.status, 1);
+        EXPECT_TRUE(run.out == whole.out) << threads;
+        EXPECT_EQ(run.err,
+                  "ivory: standard input: line 5001: the direction is 0, 0, 0 and points nowhere; "
+                  "one of the last three numbers must not be 0\n");
+    }
+}
+
 TEST(CommandLine, TheLastLineNeedsNoNewline) {
     const TemporaryFolder folder;
     put_bytes(folder / "rays", "0 0 8 0 0 -1\n0 0 8 0 0 -1");
