@@ -24,8 +24,7 @@ class EglContext final : public MemoryContext {
     explicit EglContext(WindowSize size)
         : library_({"libEGL.so.1"}),
           make_current_(library_.function<MakeCurrent>("eglMakeCurrent")),
-          destroy_(library_.function<DestroyContext>("eglDestroyContext")),
-          terminate_(library_.function<Terminate>("eglTerminate")) {
+          destroy_(library_.function<DestroyContext>("eglDestroyContext")) {
         const auto proc_address = library_.function<GetProcAddress>("eglGetProcAddress");
         const auto platform_display = reinterpret_cast<GetPlatformDisplay*>(
             proc_address("eglGetPlatformDisplayEXT"));
@@ -85,18 +84,16 @@ class EglContext final : public MemoryContext {
     using CreateContext = EglHandle(EglHandle, EglHandle, EglHandle, const EglInt*);
     using MakeCurrent = EglBool(EglHandle, EglHandle, EglHandle, EglHandle);
     using DestroyContext = EglBool(EglHandle, EglHandle);
-    using Terminate = EglBool(EglHandle);
 
+    // The display stays: eglTerminate would unload the driver, for which see SharedLibrary.
     void close() {
         make_current_(display_, nullptr, nullptr, nullptr);
         if (handle_ != nullptr) destroy_(display_, handle_);
-        terminate_(display_);
     }
 
     SharedLibrary library_;
     MakeCurrent* make_current_;
     DestroyContext* destroy_;
-    Terminate* terminate_;
     EglHandle display_ = nullptr;
     EglHandle handle_ = nullptr;
     Gl gl_;
