@@ -35,7 +35,7 @@ function(picture_test name)
             -P ${PROJECT_SOURCE_DIR}/tests/pictures/run_picture_test.cmake)
     set_tests_properties(picture.${name} PROPERTIES
         LABELS gui
-        TIMEOUT 300
+        TIMEOUT ${time_limit}
         SKIP_REGULAR_EXPRESSION "SKIPPED: "
         ENVIRONMENT "${gui_environment}")
 endfunction()
