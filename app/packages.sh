@@ -9,8 +9,10 @@ build_packages=(
     libglfw3-dev libglm-dev libimgui-dev libstb-dev
     libgtest-dev libmpfr-dev
 )
-# What the tests of the viewer run on: OpenGL in memory, a display in memory and its pointer.
-test_packages=(libosmesa6 libegl1 xvfb xdotool python3)
+# OpenGL in memory, for --headless: either of the two will do, and Mesa 25.1 has no OSMesa any more.
+memory_packages=(libosmesa6 libegl1 libgl1-mesa-dri)
+# What the tests of the viewer run on besides: a display in memory and its pointer.
+test_packages=("${memory_packages[@]}" xvfb xdotool python3)
 installed_now=no
 log=
 trap 'rm -f -- "$log"' EXIT
@@ -29,36 +31,78 @@ quietly() {
     rm -f "$log"
 }
 
+# find_missing NAME...: sets `missing` to those that are not installed.
+find_missing() {
+    local present name
+    present=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+    missing=()
+    for name in "$@"; do
+        grep -qxF "installed $name" <<<"$present" || missing+=("$name")
+    done
+}
+
+has_apt() { command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; }
+can_install() { ((EUID == 0)) || command -v sudo >/dev/null; }
+
+apt_get() {
+    local as_root=()
+    if ((EUID != 0)); then as_root=(sudo); fi
+    quietly "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# install_packages NAME...: with the lists of packages as they are.
+install_packages() {
+    say "installing $*"
+    apt_get install --yes --no-install-recommends "$@"
+    installed_now=yes
+}
+
 # need_packages NAME...: installs those that are missing. Where it cannot, it says what is needed and
 # goes on: the tools may be there without their packages.
 need_packages() {
-    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+    if ! has_apt; then
         if [[ ! -d $root/build ]]; then
             say "no apt-get here; needed are what Debian calls: $*"
         fi
         return 0
     fi
-    local present name missing=()
-    present=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
-    for name in "$@"; do
-        grep -qxF "installed $name" <<<"$present" || missing+=("$name")
-    done
+    local missing
+    find_missing "$@"
     if ((${#missing[@]} == 0)); then return 0; fi
-
-    local as_root=()
-    if ((EUID != 0)); then
-        if ! command -v sudo >/dev/null; then
-            say "missing packages, and neither root nor sudo to install them: ${missing[*]}"
-            return 0
-        fi
-        as_root=(sudo)
+    if ! can_install; then
+        say "missing packages, and neither root nor sudo to install them: ${missing[*]}"
+        return 0
     fi
-    say "installing ${missing[*]}"
-    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
-        apt-get -qq -o DPkg::Lock::Timeout=300)
-    quietly "${apt[@]}" update
-    quietly "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"
-    installed_now=yes
+    apt_get update
+    install_packages "${missing[@]}"
+}
+
+# Of NAME..., what apt-get could install.
+known_packages() {
+    LC_ALL=C apt-cache policy "$@" | awk '
+        /^[^ ]/ { name = $1; sub(/:$/, "", name) }
+        $1 == "Candidate:" && $2 != "(none)" { print name }'
+}
+
+# want_packages NAME...: installs those that are missing and that this system has, and says which it
+# goes without.
+want_packages() {
+    local missing known
+    if ! has_apt; then return 0; fi
+    find_missing "$@"
+    if ((${#missing[@]} == 0)); then return 0; fi
+    if can_install; then
+        mapfile -t known < <(known_packages "${missing[@]}")
+        # Not at every call where some are unknown; but a new system has no lists at all yet.
+        if ((${#known[@]} > 0)) || [[ -z $(known_packages cmake) ]]; then
+            apt_get update
+            mapfile -t known < <(known_packages "${missing[@]}")
+        fi
+        if ((${#known[@]} > 0)); then install_packages "${known[@]}"; fi
+        find_missing "${missing[@]}"
+    fi
+    if ((${#missing[@]} > 0)); then say "goes without ${missing[*]}: what needs them is left out"; fi
 }
 
 # CMake 3.25 or newer on the path; where the distribution's is older (Ubuntu 22.04) PyPI's, below build/.

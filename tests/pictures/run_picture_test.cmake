@@ -11,7 +11,7 @@ execute_process(
     WORKING_DIRECTORY ${folder}
     RESULT_VARIABLE result
     ERROR_VARIABLE message)
-if(message MATCHES "needs OpenGL in memory" AND NOT DEFINED ENV{IVORY_REQUIRE_OPENGL})
+if(message MATCHES "needs OpenGL in memory" AND "$ENV{IVORY_REQUIRE_OPENGL}" STREQUAL "")
     message("SKIPPED: ${message}")
     return()
 endif()
