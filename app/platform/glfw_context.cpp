@@ -168,7 +168,8 @@ class GlfwContext final : public WindowContext {
     }
 
     // GLFW calls back within wait_events only, but for what it finds out while a window is made.
-    void note(Event event) {
+    template <class SomeEvent>
+    void note(SomeEvent event) {
         if (queue_ != nullptr) queue_->push(std::move(event));
     }
 

@@ -95,7 +95,11 @@ class EventQueue {
   public:
     explicit EventQueue(WindowSize size, double scale = 1);
 
-    void push(Event event) { events_.push_back(std::move(event)); }
+    // An Event, or what may be one.
+    template <class SomeEvent>
+    void push(SomeEvent&& event) {
+        events_.emplace_back(std::forward<SomeEvent>(event));
+    }
     // Nothing waits.
     [[nodiscard]] bool empty() const { return events_.empty(); }
     // The next frame's input; with nothing waiting, what is held and nothing that happened.

@@ -40,13 +40,14 @@ void FrameTexture::update(const ShownPicture& picture, const PictureChange& chan
         const std::size_t corner =
             static_cast<std::size_t>(rect.y0) * static_cast<std::size_t>(size_.width) +
             static_cast<std::size_t>(rect.x0);
-        gl_.TexSubImage2D(gl::texture_2d, 0, rect.x0, rect.y0, rect.width(), rect.height(), gl::rgba,
-                          gl::unsigned_byte, &picture.color[corner]);
+        gl_.TexSubImage2D(gl::texture_2d, 0, rect.x0, rect.y0, rect.width(), rect.height(),
+                          gl::rgba, gl::unsigned_byte, &picture.color[corner]);
     }
     gl_.PixelStorei(gl::unpack_row_length, 0);
 }
 
-void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer, Rgba8 surroundings) const {
+void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer,
+                        Rgba8 surroundings) const {
     gl_.Disable(gl::blend);
     gl_.Disable(gl::scissor_test);
     // OpenGL counts rows from below
@@ -62,7 +63,8 @@ void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer, Rgba
     gl_.Uniform2f(top_left_uniform_, static_cast<float>(left),
                   static_cast<float>(framebuffer.height - top));
     gl_.Uniform4f(surroundings_uniform_, static_cast<float>(surroundings.r) / 255,
-                  static_cast<float>(surroundings.g) / 255, static_cast<float>(surroundings.b) / 255, 1);
+                  static_cast<float>(surroundings.g) / 255,
+                  static_cast<float>(surroundings.b) / 255, 1);
     gl_.BindVertexArray(array_);
     gl_.DrawArrays(gl::triangles, 0, 3);
     gl_.BindVertexArray(0);

@@ -18,8 +18,8 @@ class FrameTexture {
 
     // Uploads what has changed and nothing else.
     void update(const ShownPicture& picture, const PictureChange& change);
-    // Into the bound frame buffer, of that size: the picture in the middle of the viewport, which is
-    // all of it where they are of one size, and `surroundings` where it does not reach.
+    // Into the bound frame buffer, of that size: the picture in the middle of the viewport, which
+    // is all of it where they are of one size, and `surroundings` where it does not reach.
     void draw(const WindowRect& viewport, WindowSize framebuffer, Rgba8 surroundings) const;
 
   private:
@@ -30,8 +30,8 @@ class FrameTexture {
     WindowSize size_;
 };
 
-// The least number of rectangles, one tile high each, that cover the same pixels: neighbours in a row of
-// tiles become one.
+// The least number of rectangles, one tile high each, that cover the same pixels: neighbours in a
+// row of tiles become one.
 [[nodiscard]] std::vector<PixelRect> rows_of_tiles(std::vector<PixelRect> tiles);
 
 }  // namespace ivory

@@ -34,9 +34,12 @@ using std::chrono::milliseconds;
 constexpr milliseconds refinement_interval{40};
 // A first picture is shown this long after the edit at the earliest, if more is coming.
 constexpr milliseconds hold_back{12};
-// How long an edit leaves the picture before it to become complete: normally, and when the one before
-// that was cut short too, so that someone who drags without a pause sees the surface follow.
+// How long an edit leaves the picture before it to become complete: normally, and when the one
+// before that was cut short too, so that someone who drags without a pause sees the surface follow.
 constexpr milliseconds grace{15}, grace_when_starved{100};
+// A first pass that takes longer is followed by coarser ones; one that takes less by finer ones,
+// since a pass of half the stride takes about four times as long.
+constexpr milliseconds first_pass_long{40}, first_pass_short{4};
 // After the last edit, before tiles are traced again that nobody can tell from what they are.
 constexpr milliseconds rest{150};
 
@@ -60,12 +63,13 @@ bool same_geometry(const Scene& a, const Scene& b) {
 struct Board {
     std::uint64_t number = 0;  // of its request; 0: none yet
     PictureRequest request;
+    WindowSize laid_out;  // what all that follows is of
     std::vector<Rgba8> color;
     std::vector<float> depth;
-    std::vector<std::uint8_t> shows;        // by tile: something of this picture is there
-    std::vector<std::uint16_t> done;        // by tile: its pixels that are this picture's
-    std::vector<std::size_t> changed;       // tiles since the last poll, each once
-    std::vector<std::uint8_t> is_changed;   // by tile
+    std::vector<std::uint8_t> shows;       // by tile: something of this picture is there
+    std::vector<std::uint16_t> done;       // by tile: its pixels that are this picture's
+    std::vector<std::size_t> changed;      // tiles since the last poll, each once
+    std::vector<std::uint8_t> is_changed;  // by tile
     std::vector<std::array<std::uint16_t, 5>> tile_pixels;
     std::array<std::uint64_t, 5> pixels{};  // by Status, of all tiles
     std::size_t tiles_missing = 0;          // those that show nothing
@@ -74,18 +78,21 @@ struct Board {
     bool tracing = false;  // false: only shaded anew
     bool certainly_empty = false;
     bool final = false;
+    Clock::time_point first_complete;  // when the last tile came that showed nothing
     Clock::time_point ended;  // when the last tile came that anyone can tell from the one before
     std::string fault;
 
-    [[nodiscard]] bool complete() const { return number != 0 && tiles_missing == 0; }
+    [[nodiscard]] bool complete() const {
+        return number != 0 && tiles_missing == 0 && fault.empty();
+    }
 
     // Another picture. It has nothing yet of the tiles in `missing`; the others stand as they are.
     void begin(std::uint64_t new_number, const PictureRequest& new_request,
                const std::vector<std::uint8_t>& missing, bool surface_empty) {
-        const bool resized = new_request.size != request.size || number == 0;
         number = new_number;
         request = new_request;
-        if (resized) {
+        if (laid_out != request.size) {
+            laid_out = {};  // until all of it is there
             const auto size = static_cast<std::size_t>(request.size.width) *
                               static_cast<std::size_t>(request.size.height);
             color.resize(size);
@@ -95,6 +102,7 @@ struct Board {
             done.assign(missing.size(), 0);
             tile_pixels.assign(missing.size(), {});
             pixels = {};
+            laid_out = request.size;
         }
         shows.assign(missing.size(), 1);
         tiles_missing = 0;
@@ -120,8 +128,8 @@ struct Board {
         }
     }
 
-    // The tile's pixels from the frame, those that are not traced yet as blocks of the nearest one above
-    // and to the left that is. How many more of them are there now.
+    // The tile's pixels from the frame, those that are not traced yet as blocks of the nearest one
+    // above and to the left that is. How many more of them are there now.
     std::uint64_t take(const TileNotice& notice, const Frame& frame, const TileState& tile) {
         const PixelRect& rect = notice.rect;
         for (int j = rect.y0; j < rect.y1; ++j) {
@@ -162,8 +170,9 @@ bool copy_tile(const PixelRect& rect, const Board& board, ShownPicture& shown) {
     bool differs = false;
     const auto columns = static_cast<std::size_t>(rect.width());
     for (int j = rect.y0; j < rect.y1; ++j) {
-        const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(shown.size.width) +
-                                static_cast<std::size_t>(rect.x0);
+        const std::size_t row =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(shown.size.width) +
+            static_cast<std::size_t>(rect.x0);
         if (std::memcmp(&shown.color[row], &board.color[row], columns * sizeof(Rgba8)) != 0) {
             differs = true;
             std::copy_n(&board.color[row], columns, &shown.color[row]);
@@ -277,7 +286,7 @@ class RenderSession::Director {
         const auto pixels = static_cast<double>(board_.color.size());
         state.progress =
             current && pixels > 0 ? static_cast<double>(board_.pixels_done) / pixels : 0;
-        const auto& wanted = current ? board_.request : *wanted_or_board();
+        const PictureRequest& wanted = wanted_ ? *wanted_ : in_work_;
         state.milliseconds =
             wanted_number_ == 0
                 ? 0
@@ -293,8 +302,6 @@ class RenderSession::Director {
         state.surface_certainly_empty = current && board_.certainly_empty;
         state.fault = current ? board_.fault : "";
     }
-
-    const PictureRequest* wanted_or_board() const { return wanted_ ? &*wanted_ : &in_work_; }
 
     // --- the director's thread ---
 
@@ -322,7 +329,6 @@ class RenderSession::Director {
                 canvas_.reset();  // whatever state it is in
                 tiles_.clear();
                 board_.number = number;
-                board_.request = request;
                 board_.final = false;
                 board_.fault = fault;
                 lock.unlock();
@@ -346,11 +352,14 @@ class RenderSession::Director {
             board_.expect(selected, kept, task != Task::shade);
             ++totals_.begun;
         }
+        const Clock::time_point start = Clock::now();
         bool going_on = run(task, Order::coarse_to_fine, request, selected);
         {
             const std::lock_guard lock(mutex_);
             starved_ = !board_.complete();
             board_.ended = Clock::now();
+            if (board_.tiles_traced > 0)
+                choose_first_stride((starved_ ? board_.ended : board_.first_complete) - start);
         }
         if (task != Task::shade) settle(selected);
         if (going_on && std::find(kept.begin(), kept.end(), 1) != kept.end()) {
@@ -370,13 +379,23 @@ class RenderSession::Director {
         if (going_on) settings_.wake();
     }
 
+    // For the next picture, by how long this one's first pass took.
+    void choose_first_stride(Clock::duration first_pass) {
+        if (first_pass > first_pass_long)
+            first_stride_ = std::min(2 * first_stride_, 16);
+        else if (first_pass < first_pass_short && !starved_)
+            first_stride_ = std::max(first_stride_ / 2, 2);
+    }
+
     // False: cancelled.
-    bool run(Task task, Order order, const PictureRequest& request, std::vector<std::uint8_t> selected) {
+    bool run(Task task, Order order, const PictureRequest& request,
+             std::vector<std::uint8_t> selected) {
         if (std::find(selected.begin(), selected.end(), 1) == selected.end()) return true;
         JobSettings job;
         job.threads = settings_.threads;
         job.task = task;
         job.order = order;
+        job.first_stride = first_stride_;
         job.keep_lists = true;
         job.selected = std::move(selected);
         if (request.focus) {
@@ -394,7 +413,8 @@ class RenderSession::Director {
         // `show` and `deliver` cancel what is complete; here the grace of the others ends.
         while (!frame_job.wait_for(milliseconds(5))) {
             lock.lock();
-            if (cancel_at_ && (board_.complete() || Clock::now() >= *cancel_at_)) frame_job.cancel();
+            if (cancel_at_ && (board_.complete() || Clock::now() >= *cancel_at_))
+                frame_job.cancel();
             lock.unlock();
         }
         lock.lock();
@@ -414,7 +434,8 @@ class RenderSession::Director {
     // False: something else is wanted before.
     bool hand_rests(const PictureRequest& request) {
         std::unique_lock lock(mutex_);
-        return !condition_.wait_until(lock, request.since + rest, [this] { return stop_ || wanted_; });
+        return !condition_.wait_until(lock, request.since + rest,
+                                      [this] { return stop_ || wanted_; });
     }
 
     // Makes picture_, canvas_ and tiles_ ready for the request; what there is to do.
@@ -451,11 +472,14 @@ class RenderSession::Director {
         std::optional<std::vector<std::uint8_t>> touched;
         if (same_view && same_light) {
             if (directions_.empty()) directions_ = tile_directions(picture_.view, request.size);
-            touched = touched_tiles(*before.scene, *request.scene, request.camera.position, directions_);
+            touched =
+                touched_tiles(*before.scene, *request.scene, request.camera.position, directions_);
         }
         for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
-            if (!touched || (*touched)[tile] != 0) tiles_[tile] = Tile::outdated;
-            else if (tiles_[tile] == Tile::exact) tiles_[tile] = Tile::kept;
+            if (!touched || (*touched)[tile] != 0)
+                tiles_[tile] = Tile::outdated;
+            else if (tiles_[tile] == Tile::exact)
+                tiles_[tile] = Tile::kept;
         }
         return Task::trace_and_shade;
     }
@@ -474,6 +498,7 @@ class RenderSession::Director {
             if (board_.tracing) totals_.pixels_traced += more;
             if (!board_.complete()) return;
             const Clock::time_point now = Clock::now();
+            if (!was_complete) board_.first_complete = now;
             if (!was_complete && cancel_at_ && job_ != nullptr) job_->cancel();
             wake = !was_complete || now - last_wake_ >= refinement_interval;
             if (wake) last_wake_ = now;
@@ -511,6 +536,7 @@ class RenderSession::Director {
     Picture picture_;
     PictureRequest traced_;  // what picture_, canvas_ and tiles_ are of
     std::vector<Tile> tiles_;
+    int first_stride_ = 8;                   // of the next first pass
     std::vector<TileDirection> directions_;  // of picture_.view; empty: not made yet
 
     std::jthread thread_;  // last: joined before what it uses is gone
@@ -521,20 +547,14 @@ RenderSession::RenderSession(Settings settings)
 
 RenderSession::~RenderSession() = default;
 
-void RenderSession::show(PictureRequest request) {
-    director_->show(std::move(request));
-}
+void RenderSession::show(PictureRequest request) { director_->show(std::move(request)); }
 
 PictureChange RenderSession::poll(bool hurry) {
     return director_->poll(hurry, shown_, state_, seconds_until_due_);
 }
 
-bool RenderSession::first_picture_ready() const {
-    return director_->first_picture_ready();
-}
+bool RenderSession::first_picture_ready() const { return director_->first_picture_ready(); }
 
-SessionTotals RenderSession::totals() const {
-    return director_->totals();
-}
+SessionTotals RenderSession::totals() const { return director_->totals(); }
 
 }  // namespace ivory

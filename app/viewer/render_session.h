@@ -2,8 +2,9 @@
 //
 //   show(request) -> director: compile, start a job -> workers: tiles -> board -> poll() -> shown()
 //
-// The picture shown is always all of one scene: a new one gathers on the board and replaces the old one
-// when each of its tiles has something to show (every 8th pixel, as blocks); then it is refined in place.
+// The picture shown is always all of one scene: a new one gathers on the board and replaces the old
+// one when each of its tiles has something to show, as blocks, coarse enough to come in time; then
+// it is refined in place.
 #pragma once
 
 #include <chrono>
@@ -56,8 +57,9 @@ class RenderSession {
     struct Settings {
         int threads = 1;
         double tolerance = 1e-6;  // E
-        // Called by other threads when there is something to poll; must not throw. For refinement no
-        // more often than is worth a frame, for a first complete and for a final picture at once.
+        // Called by other threads when there is something to poll; must not throw. For refinement
+        // no more often than is worth a frame, for a first complete and for a final picture at
+        // once.
         std::function<void()> wake;
     };
 
@@ -66,13 +68,13 @@ class RenderSession {
     RenderSession(const RenderSession&) = delete;
     RenderSession& operator=(const RenderSession&) = delete;
 
-    // From now on this picture is wanted. Never waits. Refinement of the one before is cancelled at once
-    // (each worker ends after at most 16 pixels more); its first complete picture may still be finished
-    // for a bounded time, or a drag over a heavy scene would show nothing.
+    // From now on this picture is wanted. Never waits. Refinement of the one before is cancelled at
+    // once (each worker ends after at most 16 pixels more); its first complete picture may still be
+    // finished for a bounded time, or a drag over a heavy scene would show nothing.
     void show(PictureRequest request);
 
-    // Takes over what is finished. A coarse picture is held back for a moment, since the final one may
-    // be there before anyone sees it, unless `hurry`: the next edit is about to replace it.
+    // Takes over what is finished. A coarse picture is held back for a moment, since the final one
+    // may be there before anyone sees it, unless `hurry`: the next edit is about to replace it.
     PictureChange poll(bool hurry);
 
     [[nodiscard]] const ShownPicture& shown() const { return shown_; }

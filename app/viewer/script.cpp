@@ -28,32 +28,19 @@ struct KeyWord {
 
 // Beside the letters, the digits and f1 .. f12.
 constexpr std::array key_words = {
-    KeyWord{"escape", Key::escape},
-    KeyWord{"enter", Key::enter},
-    KeyWord{"tab", Key::tab},
-    KeyWord{"backspace", Key::backspace},
-    KeyWord{"insert", Key::insert},
-    KeyWord{"delete", Key::del},
-    KeyWord{"del", Key::del},
-    KeyWord{"space", Key::space, U' '},
-    KeyWord{"left", Key::left},
-    KeyWord{"right", Key::right},
-    KeyWord{"up", Key::up},
-    KeyWord{"down", Key::down},
-    KeyWord{"home", Key::home},
-    KeyWord{"end", Key::end},
-    KeyWord{"page_up", Key::page_up},
-    KeyWord{"page_down", Key::page_down},
-    KeyWord{"-", Key::minus, U'-'},
-    KeyWord{"=", Key::equal, U'='},
-    KeyWord{",", Key::comma, U','},
-    KeyWord{".", Key::period, U'.'},
-    KeyWord{"/", Key::slash, U'/'},
-    KeyWord{"?", Key::slash, U'?'},
-    KeyWord{"shift", Key::shift},
-    KeyWord{"ctrl", Key::control},
-    KeyWord{"alt", Key::alt},
-    KeyWord{"super", Key::super},
+    KeyWord{"escape", Key::escape},   KeyWord{"enter", Key::enter},
+    KeyWord{"tab", Key::tab},         KeyWord{"backspace", Key::backspace},
+    KeyWord{"insert", Key::insert},   KeyWord{"delete", Key::del},
+    KeyWord{"del", Key::del},         KeyWord{"space", Key::space, U' '},
+    KeyWord{"left", Key::left},       KeyWord{"right", Key::right},
+    KeyWord{"up", Key::up},           KeyWord{"down", Key::down},
+    KeyWord{"home", Key::home},       KeyWord{"end", Key::end},
+    KeyWord{"page_up", Key::page_up}, KeyWord{"page_down", Key::page_down},
+    KeyWord{"-", Key::minus, U'-'},   KeyWord{"=", Key::equal, U'='},
+    KeyWord{",", Key::comma, U','},   KeyWord{".", Key::period, U'.'},
+    KeyWord{"/", Key::slash, U'/'},   KeyWord{"?", Key::slash, U'?'},
+    KeyWord{"shift", Key::shift},     KeyWord{"ctrl", Key::control},
+    KeyWord{"alt", Key::alt},         KeyWord{"super", Key::super},
 };
 
 std::optional<KeyWord> find_key(std::string_view word) {
@@ -66,7 +53,8 @@ std::optional<KeyWord> find_key(std::string_view word) {
     int number = 0;
     if (word.starts_with('f')) {
         const auto read = std::from_chars(word.data() + 1, word.data() + word.size(), number);
-        if (read.ec == std::errc() && read.ptr == word.data() + word.size() && number >= 1 && number <= 12)
+        if (read.ec == std::errc() && read.ptr == word.data() + word.size() && number >= 1 &&
+            number <= 12)
             return KeyWord{word, static_cast<Key>(static_cast<int>(Key::f1) + number - 1)};
     }
     const auto found = std::find_if(key_words.begin(), key_words.end(),
@@ -79,9 +67,7 @@ std::string shown(const json& value) {
     return printable(value.dump(-1, ' ', false, json::error_handler_t::replace), 80);
 }
 
-[[noreturn]] void refuse(const std::string& what) {
-    throw Error(what);
-}
+[[noreturn]] void refuse(const std::string& what) { throw Error(what); }
 
 const std::string& text_of(const json& value, const char* what) {
     if (!value.is_string() || value.get_ref<const std::string&>().empty())
@@ -118,18 +104,25 @@ Chord chord_of(const json& value) {
     const std::string& text = text_of(value, "a key");
     Chord chord;
     std::string_view rest = text;
-    for (std::size_t plus = rest.find('+'); plus != std::string_view::npos && plus + 1 < rest.size();
-         plus = rest.find('+')) {
+    for (std::size_t plus = rest.find('+');
+         plus != std::string_view::npos && plus + 1 < rest.size(); plus = rest.find('+')) {
         const std::string_view word = rest.substr(0, plus);
-        if (word == "ctrl") chord.modifiers.control = true;
-        else if (word == "shift") chord.modifiers.shift = true;
-        else if (word == "alt") chord.modifiers.alt = true;
-        else if (word == "super") chord.modifiers.super = true;
-        else refuse(in_quotes(word) + " is no modifier; ctrl, shift, alt and super are");
+        if (word == "ctrl")
+            chord.modifiers.control = true;
+        else if (word == "shift")
+            chord.modifiers.shift = true;
+        else if (word == "alt")
+            chord.modifiers.alt = true;
+        else if (word == "super")
+            chord.modifiers.super = true;
+        else
+            refuse(in_quotes(word) + " is no modifier; ctrl, shift, alt and super are");
         rest.remove_prefix(plus + 1);
     }
     const std::optional<KeyWord> key = find_key(rest);
-    if (!key) refuse(in_quotes(rest) + " is no key; letters, digits, f1 to f12, ? and names as \"escape\" are");
+    if (!key)
+        refuse(in_quotes(rest) +
+               " is no key; letters, digits, f1 to f12, ? and names as \"escape\" are");
     chord.key = key->key;
     const Modifiers& modifiers = chord.modifiers;
     if (!modifiers.control && !modifiers.alt && !modifiers.super) chord.character = key->character;
@@ -146,8 +139,8 @@ WindowSize size_of(const json& value) {
     const auto width = std::from_chars(text.data(), end, size.width);
     const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
     const auto height = cross ? std::from_chars(width.ptr + 1, end, size.height) : width;
-    if (!cross || height.ec != std::errc() || height.ptr != end || size.width < 1 || size.height < 1 ||
-        size.width > largest_side || size.height > largest_side)
+    if (!cross || height.ec != std::errc() || height.ptr != end || size.width < 1 ||
+        size.height < 1 || size.width > largest_side || size.height > largest_side)
         refuse("resize has to be \"WIDTHxHEIGHT\", each 1 to " + std::to_string(largest_side) +
                ", not " + shown(value));
     return size;
@@ -187,13 +180,13 @@ step::Drag drag_of(const json& value, const char* what, bool has_by) {
     // a vertex or control point goes by its number
     const std::string name = handle->is_number_unsigned() ? std::to_string(handle->get<unsigned>())
                                                           : text_of(*handle, "handle");
-    return {{text_of(*element, "element"), name},
-            has_by ? point_of(*by, "by") : WindowPoint{}};
+    return {{text_of(*element, "element"), name}, has_by ? point_of(*by, "by") : WindowPoint{}};
 }
 
 step::Expect expect_of(const json& value, const json* within) {
     if (!value.is_object() || value.empty())
-        refuse("expect has to be an object of values, as {\"threshold\": 0.7}, not " + shown(value));
+        refuse("expect has to be an object of values, as {\"threshold\": 0.7}, not " +
+               shown(value));
     step::Expect expect{{}, within == nullptr ? 0 : number_of(*within, "within")};
     if (expect.within < 0) refuse("within has to be 0 or more, not " + shown(*within));
     for (const auto& [where, expected] : value.items()) {
@@ -210,9 +203,9 @@ step::Expect expect_of(const json& value, const json* within) {
 }
 
 constexpr std::array<std::string_view, 25> step_words = {
-    "wait",  "frames", "mouse",  "move",  "press",  "release", "double_click", "wheel", "hold",
-    "let",   "key",    "type",   "widget", "pick",  "select",  "grab",         "drag",  "drop",
-    "resize", "scale", "theme",  "expect", "save",  "state",   "screenshot",
+    "wait",   "frames", "mouse", "move",   "press", "release", "double_click", "wheel", "hold",
+    "let",    "key",    "type",  "widget", "pick",  "select",  "grab",         "drag",  "drop",
+    "resize", "scale",  "theme", "expect", "save",  "state",   "screenshot",
 };
 
 step::Any step_of(const json& object, StepKeys& keys) {
@@ -232,14 +225,16 @@ step::Any step_of(const json& object, StepKeys& keys) {
     }
     if (const json* value = keys.take("move")) return step::Move{point_of(*value, "move")};
     if (const json* value = keys.take("press")) return step::Press{button_of(*value, "press")};
-    if (const json* value = keys.take("release")) return step::Release{button_of(*value, "release")};
+    if (const json* value = keys.take("release"))
+        return step::Release{button_of(*value, "release")};
     if (const json* value = keys.take("double_click"))
         return step::DoubleClick{button_of(*value, "double_click")};
     if (const json* value = keys.take("wheel")) return step::Wheel{number_of(*value, "wheel")};
     if (const json* value = keys.take("hold")) return step::Hold{key_of(*value, "hold")};
     if (const json* value = keys.take("let")) return step::Let{key_of(*value, "let")};
     if (const json* value = keys.take("key")) return step::KeyStroke{chord_of(*value)};
-    if (const json* value = keys.take("type")) return step::Type{characters_of(text_of(*value, "type"))};
+    if (const json* value = keys.take("type"))
+        return step::Type{characters_of(text_of(*value, "type"))};
     if (const json* value = keys.take("widget")) {
         step::UseWidget use{text_of(*value, "widget"), std::nullopt};
         if (const json* set = keys.take("set")) use.value = *set;
@@ -253,7 +248,8 @@ step::Any step_of(const json& object, StepKeys& keys) {
     if (const json* value = keys.take("resize")) return step::Resize{size_of(*value)};
     if (const json* value = keys.take("scale")) {
         const double scale = number_of(*value, "scale");
-        if (!(scale >= 0.5 && scale <= 8)) refuse("scale has to be from 0.5 to 8, not " + shown(*value));
+        if (!(scale >= 0.5 && scale <= 8))
+            refuse("scale has to be from 0.5 to 8, not " + shown(*value));
         return step::Scale{scale};
     }
     if (const json* value = keys.take("theme")) {
@@ -267,7 +263,8 @@ step::Any step_of(const json& object, StepKeys& keys) {
     if (const json* value = keys.take("screenshot")) {
         step::Screenshot screenshot{text_of(*value, "screenshot"), false};
         if (const json* viewport = keys.take("viewport")) {
-            if (!viewport->is_boolean()) refuse("viewport has to be true or false, not " + shown(*viewport));
+            if (!viewport->is_boolean())
+                refuse("viewport has to be true or false, not " + shown(*viewport));
             screenshot.viewport = viewport->get<bool>();
         }
         return screenshot;
@@ -289,7 +286,8 @@ step::Any parse_line(std::string_view line) {
         refuse("not JSON, column " + std::to_string(error.byte) + ": " +
                printable(colon == std::string_view::npos ? what : what.substr(colon + 2)));
     }
-    if (!object.is_object()) refuse("a step is an object, as {\"wait\": \"final\"}, not " + shown(object));
+    if (!object.is_object())
+        refuse("a step is an object, as {\"wait\": \"final\"}, not " + shown(object));
     StepKeys keys(object);
     step::Any any = step_of(object, keys);
     if (!keys.all_taken())

@@ -69,7 +69,8 @@ const json* find_value(const json& document, const std::string& where) {
 Frame cropped(const Frame& frame, const WindowRect& rect) {
     Frame part(rect.width, rect.height, false);
     for (int j = 0; j < rect.height; ++j)
-        std::copy_n(&frame.color[frame.at(rect.x, rect.y + j)], rect.width, &part.color[part.at(0, j)]);
+        std::copy_n(&frame.color[frame.at(rect.x, rect.y + j)], rect.width,
+                    &part.color[part.at(0, j)]);
     return part;
 }
 
@@ -89,8 +90,9 @@ std::string some_of(const std::vector<std::string>& list) {
     std::vector<std::string_view> ids;
     for (const auto& [other, widget] : widgets.all()) ids.push_back(other);
     const auto meant = nearest_word(id, ids);
-    throw Error("no control " + in_quotes(id) + " is on the screen" +
-                (meant ? "; " + in_quotes(*meant) + " is" : "; the state file lists those that are"));
+    throw Error(
+        "no control " + in_quotes(id) + " is on the screen" +
+        (meant ? "; " + in_quotes(*meant) + " is" : "; the state file lists those that are"));
 }
 
 }  // namespace
@@ -107,8 +109,8 @@ void WakeUp::wait(double seconds) {
     woken_ = false;
 }
 
-ScriptPlayer::ScriptPlayer(Viewer& viewer, MemoryContext& context, EventQueue& events, WakeUp& wake_up,
-                           std::function<void()> stop)
+ScriptPlayer::ScriptPlayer(Viewer& viewer, MemoryContext& context, EventQueue& events,
+                           WakeUp& wake_up, std::function<void()> stop)
     : viewer_(viewer),
       context_(context),
       events_(events),
@@ -121,7 +123,8 @@ void ScriptPlayer::play(const Script& script) {
         try {
             std::visit([this](const auto& step) { take(step); }, line.step);
         } catch (const Error& error) {
-            throw Error(script.name + ", line " + std::to_string(line.number) + ": " + error.what());
+            throw Error(script.name + ", line " + std::to_string(line.number) + ": " +
+                        error.what());
         }
     }
 }
@@ -143,9 +146,7 @@ void ScriptPlayer::turns(int count) {
     for (int i = 0; i < count; ++i) turn();
 }
 
-void ScriptPlayer::settle() {
-    turns(frames_to_settle);
-}
+void ScriptPlayer::settle() { turns(frames_to_settle); }
 
 void ScriptPlayer::pause_for_picture() {
     const Clock::time_point start = Clock::now();
@@ -162,7 +163,8 @@ void ScriptPlayer::wait_final() {
         if (!picture.fault.empty()) throw Error("there is no picture: " + picture.fault);
         if (seconds_since(start) > longest_wait)
             throw Error("the picture is not final after 60 seconds: " +
-                        std::to_string(static_cast<int>(100 * picture.progress)) + " % of it is traced");
+                        std::to_string(static_cast<int>(100 * picture.progress)) +
+                        " % of it is traced");
         if (!viewer_.final()) wake_up_.wait(0.05);
     }
 }
@@ -176,9 +178,7 @@ void ScriptPlayer::screenshot(const std::string& file, bool viewport) {
     write_file(file, png_bytes(frame));
 }
 
-void ScriptPlayer::move_to(WindowPoint at) {
-    turn(MouseMoved{at});
-}
+void ScriptPlayer::move_to(WindowPoint at) { turn(MouseMoved{at}); }
 
 void ScriptPlayer::click() {
     turn(MouseButtonChanged{MouseButton::left, true});
@@ -289,7 +289,8 @@ void ScriptPlayer::choose(const std::string& id, const json& value) {
         std::vector<std::string> options;
         for (const auto& [other, widget] : widgets.all())
             if (other.starts_with(id + ".")) options.push_back(other.substr(id.size() + 1));
-        throw Error(in_quotes(id) + " has no choice " + shown(value) + "; it has " + some_of(options));
+        throw Error(in_quotes(id) + " has no choice " + shown(value) + "; it has " +
+                    some_of(options));
     }
     click_widget(option);
 }
@@ -308,9 +309,15 @@ void ScriptPlayer::take(const step::UseWidget& step) {
                 throw Error(in_quotes(step.id) + " takes true or false, not " + shown(value));
             if (widget.on != value.get<bool>()) click_widget(step.id);
             break;
-        case WidgetKind::number: set_number(step.id, value); break;
-        case WidgetKind::color: set_color(step.id, value); break;
-        case WidgetKind::choice: choose(step.id, value); break;
+        case WidgetKind::number:
+            set_number(step.id, value);
+            break;
+        case WidgetKind::color:
+            set_color(step.id, value);
+            break;
+        case WidgetKind::choice:
+            choose(step.id, value);
+            break;
         case WidgetKind::text:
             if (!value.is_string())
                 throw Error(in_quotes(step.id) + " takes a text, not " + shown(value));

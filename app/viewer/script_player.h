@@ -1,5 +1,5 @@
-// Plays a script on a viewer in memory, as a person would: every step goes through the input, one change
-// a frame.
+// Plays a script on a viewer in memory, as a person would: every step goes through the input, one
+// change a frame.
 #pragma once
 
 #include <atomic>
@@ -31,8 +31,8 @@ class WakeUp {
 
 class ScriptPlayer {
   public:
-    // `wake_up` is what the viewer's ViewerSettings::wake wakes. `stop` is asked in every frame and may
-    // throw (an interrupt).
+    // `wake_up` is what the viewer's ViewerSettings::wake wakes. `stop` is asked in every frame and
+    // may throw (an interrupt).
     ScriptPlayer(Viewer& viewer, MemoryContext& context, EventQueue& events, WakeUp& wake_up,
                  std::function<void()> stop);
 

@@ -16,9 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-json triple(const Vec3d& v) {
-    return json::array({v.x, v.y, v.z});
-}
+json triple(const Vec3d& v) { return json::array({v.x, v.y, v.z}); }
 
 json rectangle(const WindowRect& rect) {
     return json::array({rect.x, rect.y, rect.width, rect.height});
@@ -59,7 +57,8 @@ json state_json(Viewer& viewer, std::uint64_t tiles_before) {
     const TileGrid grid(state.viewport.width, state.viewport.height);
     all["tiles"] = {{"total", grid.tiles.size()},
                     {"traced", viewer.totals().tiles_traced - tiles_before}};
-    all["pixels"] = {{"hit", picture.hit}, {"miss", picture.miss}, {"unresolved", picture.unresolved}};
+    all["pixels"] = {
+        {"hit", picture.hit}, {"miss", picture.miss}, {"unresolved", picture.unresolved}};
     all["final"] = viewer.final();
     all["milliseconds"] = {{"frames", viewer.times().frames}, {"edits", viewer.times().edits}};
     all["message"] = state.message.text;
@@ -88,7 +87,8 @@ std::string state_text(const json& state) {
         }
         std::string inner;
         for (const auto& [inner_key, inner_value] : value.items())
-            inner += (inner.empty() ? "\n    " : ",\n    ") + text(inner_key) + ": " + text(inner_value);
+            inner +=
+                (inner.empty() ? "\n    " : ",\n    ") + text(inner_key) + ": " + text(inner_value);
         all += "{" + inner + "\n  }";
     }
     return all + "\n}\n";

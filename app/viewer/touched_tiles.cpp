@@ -14,18 +14,16 @@ namespace ivory {
 
 namespace {
 
-constexpr double visible_share = 1e-6;      // of the threshold
-constexpr std::size_t most_changed = 16;    // elements: beyond, all tiles are traced anew
-constexpr int most_balls = 24;              // along one skeleton
+constexpr double visible_share = 1e-6;    // of the threshold
+constexpr std::size_t most_changed = 16;  // elements: beyond, all tiles are traced anew
+constexpr int most_balls = 24;            // along one skeleton
 
 struct Ball {
     Vec3d center;
     double radius;
 };
 
-double length(const Vec3d& v) {
-    return std::sqrt(dot(v, v));
-}
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 // Distance from the skeleton beyond which |F| <= share T.
 double reach(const Element& element, double threshold) {
@@ -34,8 +32,9 @@ double reach(const Element& element, double threshold) {
     return ratio <= 1 ? 0 : element.width * std::sqrt(std::log(ratio));
 }
 
-// Balls of that reach along a piece of the skeleton of that length, no farther apart than the reach: with
-// half the distance added to their radii they cover all points that are within reach of it.
+// Balls of that reach along a piece of the skeleton of that length, no farther apart than the
+// reach: with half the distance added to their radii they cover all points that are within reach of
+// it.
 template <class Place>
 void cover(double skeleton_length, double radius, const Place& place, std::vector<Ball>& balls) {
     const double wanted = radius > 0 ? std::ceil(skeleton_length / radius) : most_balls;
@@ -51,7 +50,8 @@ void cover(const Element& element, double threshold, std::vector<Ball>& balls) {
         balls.push_back({point->position, radius});
     } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
         const Vec3d along = segment->b - segment->a;
-        cover(length(along), radius, [&](double x) { return segment->a + x * along; }, balls);
+        cover(
+            length(along), radius, [&](double x) { return segment->a + x * along; }, balls);
     } else {
         const auto& circle = std::get<CircleSkeleton>(element.skeleton);
         const Vec3d n = unit(circle.normal);
@@ -59,7 +59,8 @@ void cover(const Element& element, double threshold, std::vector<Ball>& balls) {
         const Vec3d x_axis = unit(cross(n, aside)), y_axis = cross(n, x_axis);
         const auto place = [&](double turn) {
             const double angle = 2 * std::numbers::pi * turn;
-            return circle.center + circle.radius * (std::cos(angle) * x_axis + std::sin(angle) * y_axis);
+            return circle.center +
+                   circle.radius * (std::cos(angle) * x_axis + std::sin(angle) * y_axis);
         };
         cover(2 * std::numbers::pi * circle.radius, radius, place, balls);
     }

@@ -1,5 +1,6 @@
-// Which tiles of a picture an edit can change so that anyone sees it: those that look through the reach of an
-// element that was changed, before or after. What lies farther off keeps its pixels until the hand rests.
+// Which tiles of a picture an edit can change so that anyone sees it: those that look through the
+// reach of an element that was changed, before or after. What lies farther off keeps its pixels
+// until the hand rests.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +21,11 @@ struct TileDirection {
 
 [[nodiscard]] std::vector<TileDirection> tile_directions(const View& view, WindowSize size);
 
-// Not 0 for each tile that is touched, in the order of the tiles; nothing where every tile may be: another
-// threshold, or many elements changed. Cameras, lights and background are not looked at.
+// Not 0 for each tile that is touched, in the order of the tiles; nothing where every tile may be:
+// another threshold, or many elements changed. Cameras, lights and background are not looked at.
 //
-// Reach: where |F| > 1e-6 T. It is a matter of sight, not of proof: the session traces the other tiles too
-// before it calls a picture final.
+// Reach: where |F| > 1e-6 T. It is a matter of sight, not of proof: the session traces the other
+// tiles too before it calls a picture final.
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> touched_tiles(
     const Scene& before, const Scene& after, const Vec3d& eye,
     const std::vector<TileDirection>& tiles);

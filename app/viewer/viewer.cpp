@@ -49,13 +49,14 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 bool holds_a_button(const Input& input) {
-    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) != input.mouse_down.end();
+    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) !=
+           input.mouse_down.end();
 }
 
 // Since the frame before, beyond a pointer that moves.
 bool something_happened(const Input& input) {
-    return input.wheel != 0 || input.wheel_x != 0 || !input.pressed.empty() || !input.text.empty() ||
-           !input.dropped.empty() || input.theme || input.close_requested;
+    return input.wheel != 0 || input.wheel_x != 0 || !input.pressed.empty() ||
+           !input.text.empty() || !input.dropped.empty() || input.theme || input.close_requested;
 }
 
 // What the session was last asked for.
@@ -79,7 +80,8 @@ struct Viewer::Parts {
     ViewportMouse mouse;
 
     Asked asked;
-    std::optional<Asked> framed;  // what an automatic view was made for; its camera is not looked at
+    // What an automatic view was made for; its camera is not looked at.
+    std::optional<Asked> framed;
     std::optional<std::pair<Theme, double>> style;  // theme and scale that ImGui stands at
     bool overlay_hidden = false, minimised = false;
     int frames_to_settle = settling_frames;
@@ -100,8 +102,8 @@ struct Viewer::Parts {
 
     // When the edit was made whose first picture has just come, if one has.
     std::optional<Clock::time_point> take_picture(const Input& input) {
-        const PictureChange change =
-            session.poll(!settings.hold_back_coarse || holds_a_button(input) || something_happened(input));
+        const PictureChange change = session.poll(
+            !settings.hold_back_coarse || holds_a_button(input) || something_happened(input));
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();
@@ -158,7 +160,8 @@ struct Viewer::Parts {
         const Gl& gl = context.gl();
         gl.BindFramebuffer(gl::framebuffer, context.framebuffer());
         const Rgba8 background = to_srgb(state.document.scene().background);
-        gl.ClearColor(static_cast<float>(background.r) / 255, static_cast<float>(background.g) / 255,
+        gl.ClearColor(static_cast<float>(background.r) / 255,
+                      static_cast<float>(background.g) / 255,
                       static_cast<float>(background.b) / 255, 1);
         gl.Disable(gl::scissor_test);
         gl.Clear(gl::color_buffer_bit);
@@ -230,15 +233,14 @@ void Viewer::frame(const Input& input) {
     if (parts.frames_to_settle > 0) --parts.frames_to_settle;
 }
 
-void Viewer::hide_overlay(bool hidden) {
-    parts_->overlay_hidden = hidden;
-}
+void Viewer::hide_overlay(bool hidden) { parts_->overlay_hidden = hidden; }
 
 double Viewer::next_frame_wanted() const {
     if (parts_->minimised) return -1;
     if (parts_->frames_to_settle > 0) return 0;
     double soonest = -1;
-    for (const double seconds : {ivory::next_frame_wanted(parts_->state), parts_->session.seconds_until_due()})
+    for (const double seconds :
+         {ivory::next_frame_wanted(parts_->state), parts_->session.seconds_until_due()})
         if (seconds >= 0 && (soonest < 0 || seconds < soonest)) soonest = seconds;
     return soonest;
 }
@@ -247,25 +249,15 @@ bool Viewer::awaits_first_picture() const {
     return parts_->asked.scene != nullptr && !parts_->session.first_picture_ready();
 }
 
-bool Viewer::final() const {
-    return parts_->state.picture.final;
-}
+bool Viewer::final() const { return parts_->state.picture.final; }
 
-ViewerState& Viewer::state() {
-    return parts_->state;
-}
+ViewerState& Viewer::state() { return parts_->state; }
 
-const ViewportMouse& Viewer::mouse() const {
-    return parts_->mouse;
-}
+const ViewportMouse& Viewer::mouse() const { return parts_->mouse; }
 
-SessionTotals Viewer::totals() const {
-    return parts_->session.totals();
-}
+SessionTotals Viewer::totals() const { return parts_->session.totals(); }
 
-const ViewerTimes& Viewer::times() const {
-    return parts_->times;
-}
+const ViewerTimes& Viewer::times() const { return parts_->times; }
 
 std::string Viewer::title() const {
     const Document& document = parts_->state.document;
@@ -275,12 +267,18 @@ std::string Viewer::title() const {
 
 Cursor Viewer::cursor() const {
     switch (ImGui::GetMouseCursor()) {
-        case ImGuiMouseCursor_TextInput: return Cursor::text;
-        case ImGuiMouseCursor_ResizeEW: return Cursor::resize_x;
-        case ImGuiMouseCursor_ResizeNS: return Cursor::resize_y;
-        case ImGuiMouseCursor_ResizeAll: return Cursor::move;
-        case ImGuiMouseCursor_Hand: return Cursor::hand;
-        default: return Cursor::arrow;
+        case ImGuiMouseCursor_TextInput:
+            return Cursor::text;
+        case ImGuiMouseCursor_ResizeEW:
+            return Cursor::resize_x;
+        case ImGuiMouseCursor_ResizeNS:
+            return Cursor::resize_y;
+        case ImGuiMouseCursor_ResizeAll:
+            return Cursor::move;
+        case ImGuiMouseCursor_Hand:
+            return Cursor::hand;
+        default:
+            return Cursor::arrow;
     }
 }
 

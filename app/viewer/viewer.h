@@ -26,23 +26,24 @@ struct ViewerSettings {
 // What the last frames and edits took: the newest last, at most 256 of each.
 struct ViewerTimes {
     std::vector<double> frames;  // milliseconds from input to the end of drawing
-    std::vector<double> edits;   // from the input that changed scene or view to its first picture drawn
+    // from the input that changed scene or view to its first picture drawn
+    std::vector<double> edits;
 };
 
 class Viewer {
   public:
-    // The context is current and outlives the viewer. One viewer at a time. Throws Error where OpenGL
-    // lacks something.
+    // The context is current and outlives the viewer. One viewer at a time. Throws Error where
+    // OpenGL lacks something.
     Viewer(Context& context, ViewerSettings settings);
     ~Viewer();
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
-    // Input in, a frame drawn into the context's buffer and presented. Never waits for the renderer.
-    // Nothing is drawn while the window has no size.
+    // Input in, a frame drawn into the context's buffer and presented. Never waits for the
+    // renderer. Nothing is drawn while the window has no size.
     void frame(const Input& input);
-    // Until it is called again: frames with nothing over the picture, neither skeleton, handles and rings
-    // nor a tooltip or dialog.
+    // Until it is called again: frames with nothing over the picture, neither skeleton, handles and
+    // rings nor a tooltip or dialog.
     void hide_overlay(bool hidden);
 
     // Seconds after which a frame is wanted though nothing happens; < 0: none is.

@@ -59,7 +59,8 @@ void run_window(const WindowSettings& settings) {
         }
         const Clock::time_point now = Clock::now();
         // after a sleep animations go on where they were
-        const double seconds = std::clamp(std::chrono::duration<double>(now - last).count(), 1e-4, 0.1);
+        const double seconds =
+            std::clamp(std::chrono::duration<double>(now - last).count(), 1e-4, 0.1);
         last = now;
         viewer.frame(events.next_frame(seconds));
         if (const std::string wanted = viewer.title(); wanted != title) {

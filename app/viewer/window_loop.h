@@ -9,8 +9,9 @@
 namespace ivory {
 
 struct WindowSettings {
-    std::optional<std::string> scene;  // a broken one leaves an empty window that says what is wrong
-    WindowSize size{1280, 720};        // points of the screen
+    // A broken one leaves an empty window that says what is wrong.
+    std::optional<std::string> scene;
+    WindowSize size{1280, 720};  // points of the screen
     int threads = 1;
 };
 

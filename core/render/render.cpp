@@ -44,7 +44,11 @@ struct TracedTile {
 
 std::vector<int> strides_of(const JobSettings& settings) {
     const bool coarse = settings.order == Order::coarse_to_fine && settings.task != Task::shade;
-    return coarse ? std::vector<int>{8, 4, 2, 1} : std::vector<int>{1};
+    std::vector<int> strides;
+    for (int stride = coarse ? settings.first_stride : 1; stride > 0; stride /= 2) {
+        strides.push_back(stride);
+    }
+    return strides;
 }
 
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do

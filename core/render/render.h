@@ -22,7 +22,7 @@ enum class Task : std::uint8_t {
 
 enum class Order : std::uint8_t {
     plain,           // each tile once, all of its pixels
-    coarse_to_fine,  // all tiles with every 8th pixel, then 4th, 2nd, all; no pixel traced twice
+    coarse_to_fine,  // all tiles with every n-th pixel, then n/2-th, ... all; none traced twice
 };
 
 // Pixels whose column and row are multiples of `stride` are in the frame now. Those between that
@@ -30,13 +30,14 @@ enum class Order : std::uint8_t {
 struct TileNotice {
     std::size_t tile;
     PixelRect rect;
-    int stride;  // 8, 4, 2 or 1
+    int stride;  // a power of two, 16 at the most
 };
 
 struct JobSettings {
     int threads = 1;  // 1 or more
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
+    int first_stride = 8;     // of coarse to fine: the first pass's, 16, 8, 4, 2 or 1
     bool keep_lists = false;  // in the canvas, for the next job
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;

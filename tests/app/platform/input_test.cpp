@@ -26,7 +26,8 @@ TEST(EventQueue, WithoutEventsAFrameHoldsWhatIsHeld) {
 }
 
 TEST(EventQueue, MovesAndWheelStepsMerge) {
-    EventQueue queue = queue_of({MouseMoved{{1, 1}}, MouseMoved{{2, 2}}, WheelTurned{0, 1}, WheelTurned{0, 2}});
+    EventQueue queue =
+        queue_of({MouseMoved{{1, 1}}, MouseMoved{{2, 2}}, WheelTurned{0, 1}, WheelTurned{0, 2}});
     const Input input = queue.next_frame(a_frame);
     EXPECT_EQ(input.mouse, (WindowPoint{2, 2}));
     EXPECT_EQ(input.wheel, 3);
@@ -44,14 +45,16 @@ TEST(EventQueue, PressAndReleaseFallIntoTwoFrames) {
 }
 
 TEST(EventQueue, AMoveAfterAPressWaits) {
-    EventQueue queue = queue_of({MouseMoved{{1, 1}}, MouseButtonChanged{MouseButton::left, true}, MouseMoved{{9, 9}}});
+    EventQueue queue = queue_of(
+        {MouseMoved{{1, 1}}, MouseButtonChanged{MouseButton::left, true}, MouseMoved{{9, 9}}});
     EXPECT_EQ(queue.next_frame(a_frame).mouse, (WindowPoint{1, 1}));
     EXPECT_EQ(queue.next_frame(a_frame).mouse, (WindowPoint{9, 9}));
 }
 
 TEST(EventQueue, AKeyCarriesTheModifiersOfItsMoment) {
-    EventQueue queue = queue_of({KeyChanged{Key::control, true, false}, KeyChanged{Key::z, true, false},
-                                 KeyChanged{Key::control, false, false}});
+    EventQueue queue =
+        queue_of({KeyChanged{Key::control, true, false}, KeyChanged{Key::z, true, false},
+                  KeyChanged{Key::control, false, false}});
     const Input input = queue.next_frame(a_frame);
     ASSERT_EQ(input.pressed.size(), 2u);
     EXPECT_EQ(input.pressed[1].key, Key::z);
@@ -69,8 +72,8 @@ TEST(EventQueue, TextIsNotTakenBeforeTheKeyThatCameFirst) {
 }
 
 TEST(EventQueue, ALettersTextComesWithItsKey) {
-    EventQueue queue = queue_of({KeyChanged{Key::a, true, false}, TextTyped{U'a'}, KeyChanged{Key::b, true, false},
-                                 TextTyped{U'b'}});
+    EventQueue queue = queue_of({KeyChanged{Key::a, true, false}, TextTyped{U'a'},
+                                 KeyChanged{Key::b, true, false}, TextTyped{U'b'}});
     EXPECT_EQ(queue.next_frame(a_frame).text, U"ab");
     EXPECT_TRUE(queue.empty());
 }

@@ -30,7 +30,8 @@ TEST(Script, EveryStepOfTheContractIsRead) {
     EXPECT_EQ(only_step<step::Mouse>(R"({"mouse": [10, 20.5]})").at, (WindowPoint{10, 20.5}));
     EXPECT_EQ(only_step<step::Press>(R"({"press": "left"})").button, MouseButton::left);
     EXPECT_EQ(only_step<step::Release>(R"({"release": "middle"})").button, MouseButton::middle);
-    EXPECT_EQ(only_step<step::DoubleClick>(R"({"double_click": "right"})").button, MouseButton::right);
+    EXPECT_EQ(only_step<step::DoubleClick>(R"({"double_click": "right"})").button,
+              MouseButton::right);
     EXPECT_EQ(only_step<step::Wheel>(R"({"wheel": -1})").steps, -1);
     EXPECT_EQ(only_step<step::Hold>(R"({"hold": "shift"})").key, Key::shift);
     EXPECT_EQ(only_step<step::Let>(R"({"let": "shift"})").key, Key::shift);
@@ -44,7 +45,9 @@ TEST(Script, EveryStepOfTheContractIsRead) {
     EXPECT_EQ(drag.grab.element, "e");
     EXPECT_EQ(drag.grab.handle, "position");
     EXPECT_EQ(drag.by, (WindowPoint{3, -4}));
-    EXPECT_EQ(only_step<step::Drag>(R"({"drag": {"element": "e", "handle": 2, "by": [0, 0]}})").grab.handle, "2");
+    EXPECT_EQ(only_step<step::Drag>(R"({"drag": {"element": "e", "handle": 2, "by": [0, 0]}})")
+                  .grab.handle,
+              "2");
     EXPECT_EQ(only_step<step::Grab>(R"({"grab": {"element": "e", "handle": "a"}})").handle, "a");
     EXPECT_EQ(only_step<step::Move>(R"({"move": [5, -6]})").by, (WindowPoint{5, -6}));
     EXPECT_EQ(only_step<step::MouseTo>(R"({"mouse": "threshold"})").widget, "threshold");
@@ -52,14 +55,16 @@ TEST(Script, EveryStepOfTheContractIsRead) {
     EXPECT_EQ(only_step<step::Resize>(R"({"resize": "640x480"})").size, (WindowSize{640, 480}));
     EXPECT_EQ(only_step<step::Scale>(R"({"scale": 2})").scale, 2);
     EXPECT_EQ(only_step<step::SetTheme>(R"({"theme": "light"})").theme, Theme::light);
-    const auto expect = only_step<step::Expect>(R"({"expect": {"threshold": 0.7}, "within": 1e-9})");
+    const auto expect =
+        only_step<step::Expect>(R"({"expect": {"threshold": 0.7}, "within": 1e-9})");
     ASSERT_EQ(expect.expectations.size(), 1u);
     EXPECT_EQ(expect.expectations[0].where, "threshold");
     EXPECT_EQ(expect.within, 1e-9);
     EXPECT_EQ(only_step<step::Save>(R"({"save": "s.json"})").file, "s.json");
     EXPECT_EQ(only_step<step::WriteState>(R"({"state": "s.json"})").file, "s.json");
     EXPECT_FALSE(only_step<step::Screenshot>(R"({"screenshot": "s.png"})").viewport);
-    EXPECT_TRUE(only_step<step::Screenshot>(R"({"screenshot": "s.png", "viewport": true})").viewport);
+    EXPECT_TRUE(
+        only_step<step::Screenshot>(R"({"screenshot": "s.png", "viewport": true})").viewport);
 }
 
 TEST(Script, ChordsHaveModifiersAKeyAndItsCharacter) {
@@ -96,7 +101,8 @@ TEST_P(WrongSteps, AreRefusedWithTheirLine) {
         FAIL() << GetParam().line;
     } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find("s.txt, line 2: "), 0u) << error.what();
-        EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos)
+            << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     }
 }
@@ -106,10 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{R"({"wait": "fnal"})", R"(wait has to be "final")"},
         Wrong{R"({"waits": "final"})", R"("waits" is no step; "wait" is)"},
-        Wrong{R"({"xyzzy": 1})", "steps are wait, frames"},
-        Wrong{R"({})", "is no step"},
-        Wrong{R"([1])", "a step is an object"},
-        Wrong{R"({"wait": "final")", "not JSON, column 17"},
+        Wrong{R"({"xyzzy": 1})", "steps are wait, frames"}, Wrong{R"({})", "is no step"},
+        Wrong{R"([1])", "a step is an object"}, Wrong{R"({"wait": "final")", "not JSON, column 17"},
         Wrong{R"({"frames": -1})", "frames has to be a whole number"},
         Wrong{R"({"frames": 1.5})", "frames has to be a whole number"},
         Wrong{R"({"mouse": [1]})", "mouse has to be [x, y]"},
@@ -117,11 +121,11 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"({"press": "up"})", R"(press has to be "left", "middle" or "right")"},
         Wrong{R"({"hold": "hyper"})", "is no key"},
         Wrong{R"({"key": "meta+x"})", R"("meta" is no modifier)"},
-        Wrong{R"({"key": "ctrl+"})", "is no key"},
-        Wrong{R"({"key": ""})", "has to be a text"},
+        Wrong{R"({"key": "ctrl+"})", "is no key"}, Wrong{R"({"key": ""})", "has to be a text"},
         Wrong{R"({"wheel": "1"})", "wheel has to be a number"},
         Wrong{R"({"drag": {"element": "e", "handle": "a"}})", "drag has to be"},
-        Wrong{R"({"drag": {"element": "e", "handle": "a", "by": [1, 2], "x": 1}})", "drag has to be"},
+        Wrong{R"({"drag": {"element": "e", "handle": "a", "by": [1, 2], "x": 1}})",
+              "drag has to be"},
         Wrong{R"({"grab": {"element": "e"}})", "grab has to be"},
         Wrong{R"({"move": 3})", "move has to be [x, y]"},
         Wrong{R"({"resize": "640"})", R"(resize has to be "WIDTHxHEIGHT")"},

@@ -90,7 +90,8 @@ TEST(TouchedTiles, AHiddenElementTouchesNone) {
     EXPECT_EQ(std::count(touched->begin(), touched->end(), 1), 0);
 }
 
-// Whatever is moved, added, taken away or changed: no pixel of another tile changes by more than 1/255.
+// Whatever is moved, added, taken away or changed: no pixel of another tile changes by more than
+// 1/255.
 TEST(TouchedTiles, NothingElseChangesVisibly) {
     constexpr unsigned seed = 20240611;
     std::mt19937 random(seed);
@@ -103,9 +104,15 @@ TEST(TouchedTiles, NothingElseChangesVisibly) {
     for (int i = 0; i < 12; ++i) {
         Scene after = before;
         switch (i % 4) {
-            case 0: std::get<PointSkeleton>(after.elements[0].skeleton).position.y += shift(random); break;
-            case 1: std::get<SegmentSkeleton>(after.elements[1].skeleton).b.x += shift(random); break;
-            case 2: std::get<CircleSkeleton>(after.elements[2].skeleton).normal.x += shift(random); break;
+            case 0:
+                std::get<PointSkeleton>(after.elements[0].skeleton).position.y += shift(random);
+                break;
+            case 1:
+                std::get<SegmentSkeleton>(after.elements[1].skeleton).b.x += shift(random);
+                break;
+            case 2:
+                std::get<CircleSkeleton>(after.elements[2].skeleton).normal.x += shift(random);
+                break;
             case 3:
                 after.elements.insert(
                     after.elements.begin() + 1,

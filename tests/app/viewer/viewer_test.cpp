@@ -18,6 +18,7 @@
 #include "core/render/canvas.h"
 #include "core/render/render.h"
 #include "core/scene/error.h"
+#include "core/scene/scene_json.h"
 #include "tests/app/platform/memory_contexts.h"
 
 namespace ivory {
@@ -67,7 +68,8 @@ class Driven {
 std::vector<Rgba8> colors_of(const Frame& frame, const WindowRect& rect) {
     std::vector<Rgba8> colors;
     for (int j = 0; j < rect.height; ++j)
-        for (int i = 0; i < rect.width; ++i) colors.push_back(frame.color[frame.at(rect.x + i, rect.y + j)]);
+        for (int i = 0; i < rect.width; ++i)
+            colors.push_back(frame.color[frame.at(rect.x + i, rect.y + j)]);
     return colors;
 }
 
@@ -155,22 +157,27 @@ TEST_P(InMemory, AScriptSaysWhatFailsAndWhere) {
     EXPECT_EQ(driven.failure("\n{\"expect\": {\"threshold\": 0.5}}"),
               "test, line 2: expected \"threshold\" to be 0.5, it is 0.55");
     EXPECT_EQ(driven.failure(R"({"expect": {"threshold": 0.5}, "within": 0.06})"), "");
-    EXPECT_EQ(driven.failure(R"({"expect": {"nonsense": 1}})"),
-              "test, line 1: expected \"nonsense\" to be 1, but neither the scene nor the state has it");
+    EXPECT_EQ(
+        driven.failure(R"({"expect": {"nonsense": 1}})"),
+        "test, line 1: expected \"nonsense\" to be 1, but neither the scene nor the state has it");
     EXPECT_EQ(driven.failure(R"({"widget": "thresold", "set": 1})"),
               "test, line 1: no control \"thresold\" is on the screen; \"threshold\" is");
     EXPECT_EQ(driven.failure(R"({"widget": "threshold", "set": "high"})"),
               "test, line 1: \"threshold\" takes a number, not \"high\"");
-    EXPECT_EQ(driven.failure(R"({"widget": "edit.undo"})"), "test, line 1: the control \"edit.undo\" is greyed");
+    EXPECT_EQ(driven.failure(R"({"widget": "edit.undo"})"),
+              "test, line 1: the control \"edit.undo\" is greyed");
     driven.play(R"({"key": "escape"})");
     EXPECT_EQ(driven.failure(R"({"widget": "add.point", "set": true})"),
               "test, line 1: \"add.point\" can be clicked, not set; leave \"set\" out");
-    EXPECT_NE(driven.failure(R"({"select": "nobody"})").find("no element is called \"nobody\"; there are "),
+    EXPECT_NE(driven.failure(R"({"select": "nobody"})")
+                  .find("no element is called \"nobody\"; there are "),
               std::string::npos);
-    EXPECT_NE(driven.failure(R"({"drag": {"element": "point 1", "handle": "radius", "by": [1, 1]}})")
-                  .find("\"point 1\" has no handle \"radius\""),
+    EXPECT_NE(
+        driven.failure(R"({"drag": {"element": "point 1", "handle": "radius", "by": [1, 1]}})")
+            .find("\"point 1\" has no handle \"radius\""),
+        std::string::npos);
+    EXPECT_NE(driven.failure(R"({"pick": [2, 2]})").find("lies outside of the picture"),
               std::string::npos);
-    EXPECT_NE(driven.failure(R"({"pick": [2, 2]})").find("lies outside of the picture"), std::string::npos);
 }
 
 TEST_P(InMemory, ANumberIsSetToTheLastBit) {
@@ -243,8 +250,40 @@ TEST_P(InMemory, AFrameIsWantedOnlyWhileSomethingChanges) {
     EXPECT_LT(driven.viewer().next_frame_wanted(), 0);
 }
 
+TEST_P(InMemory, EveryStepOfADragShowsThatStepsScene) {
+    const auto context = context_or_skip({500, 380});
+    if (!context) return;
+    Driven driven(*context, {500, 380});
+    Scene scene;
+    scene.threshold = 0.3;
+    for (int i = 0; i < 100; ++i) {
+        Element element;
+        element.skeleton = PointSkeleton{{0.35 * (i % 10) - 1.6, 0.35 * (i / 10) - 1.6, 0}};
+        element.kernel = KernelKind::wyvill;
+        element.width = 0.3;
+        scene.elements.push_back(element);
+    }
+    scene.camera = Camera{{0, 0, 6}, {0, 0, 0}};
+    const std::string file = testing::TempDir() + "hundred.ivory.json";
+    save_scene(scene, file);
+    driven.play(R"({"drop": ")" + file + R"("}
+                   {"key": "tab"}
+                   {"wait": "final"})");
+    driven.state().document.select(44);
+    driven.play(R"({"grab": {"element": "point 45", "handle": "position"}})");
+    for (int step = 0; step < 60; ++step) {
+        driven.play(R"({"move": [1, -1]}
+                       {"frames": 1})");
+        EXPECT_EQ(driven.state().picture.scene, driven.state().document.scene_value()) << step;
+    }
+    driven.play(R"({"release": "left"})");
+    EXPECT_TRUE(viewport_is_render(driven));
+    EXPECT_EQ(driven.state().document.undo_name(), "Move point 45");
+}
+
 // Draws the texture alone, as the viewer does.
-std::vector<Rgba8> drawn(const MemoryContext& context, const FrameTexture& texture, const WindowRect& viewport) {
+std::vector<Rgba8> drawn(const MemoryContext& context, const FrameTexture& texture,
+                         const WindowRect& viewport) {
     const WindowSize size = context.size();
     const Gl& gl = context.gl();
     gl.BindFramebuffer(gl::framebuffer, context.framebuffer());
@@ -305,8 +344,8 @@ TEST_P(FrameTextures, AnotherSizeThanTheViewportStandsInItsMiddle) {
 
 TEST(RowsOfTiles, NeighboursInARowBecomeOne) {
     EXPECT_TRUE(rows_of_tiles({}).empty());
-    const std::vector<PixelRect> rows =
-        rows_of_tiles({{32, 0, 48, 16}, {0, 16, 16, 32}, {0, 0, 16, 16}, {16, 0, 32, 16}, {32, 16, 48, 32}});
+    const std::vector<PixelRect> rows = rows_of_tiles(
+        {{32, 0, 48, 16}, {0, 16, 16, 32}, {0, 0, 16, 16}, {16, 0, 32, 16}, {32, 16, 48, 32}});
     EXPECT_EQ(rows, (std::vector<PixelRect>{{0, 0, 48, 16}, {0, 16, 16, 32}, {32, 16, 48, 32}}));
 }
 

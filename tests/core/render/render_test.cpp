@@ -215,29 +215,33 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
     Canvas expected(frame_width, frame_height, false);
     render(picture, expected, {});
 
-    Canvas canvas(frame_width, frame_height, false);
-    std::vector<std::atomic<int>> stride(canvas.tiles.size());
-    std::vector<std::atomic<int>> inside(canvas.tiles.size());
-    std::atomic<int> wrong{0};
-    JobSettings settings;
-    settings.order = Order::coarse_to_fine;
-    settings.threads = 3;
-    settings.on_tile = [&](const TileNotice& notice) {
-        if (inside[notice.tile]++ != 0) ++wrong;
-        const int before = stride[notice.tile].exchange(notice.stride);
-        if (notice.stride != 1 && notice.stride != (before == 0 ? 8 : before / 2)) ++wrong;
-        if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
-        for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
-            for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
-                const std::size_t p = canvas.frame.at(i, j);
-                if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
+    for (const int first_stride : {1, 4, 8, 16}) {
+        Canvas canvas(frame_width, frame_height, false);
+        std::vector<std::atomic<int>> stride(canvas.tiles.size());
+        std::vector<std::atomic<int>> inside(canvas.tiles.size());
+        std::atomic<int> wrong{0};
+        JobSettings settings;
+        settings.order = Order::coarse_to_fine;
+        settings.first_stride = first_stride;
+        settings.threads = 3;
+        settings.on_tile = [&](const TileNotice& notice) {
+            if (inside[notice.tile]++ != 0) ++wrong;
+            const int before = stride[notice.tile].exchange(notice.stride);
+            if (notice.stride != 1 && notice.stride != (before == 0 ? first_stride : before / 2))
+                ++wrong;
+            if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
+            for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
+                for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
+                    const std::size_t p = canvas.frame.at(i, j);
+                    if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
+                }
             }
-        }
-        --inside[notice.tile];
-    };
-    render(picture, canvas, settings);
-    EXPECT_EQ(wrong, 0);
-    for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
+            --inside[notice.tile];
+        };
+        render(picture, canvas, settings);
+        EXPECT_EQ(wrong, 0);
+        for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
+    }
 }
 
 TEST(Render, TheFocusComesFirst) {
