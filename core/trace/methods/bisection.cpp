@@ -3,71 +3,32 @@
 #include <array>
 #include <cmath>
 
-#include "core/field/kernel.h"
 #include "core/field/surface.h"
-#include "core/trace/clip.h"
+#include "core/interval/quick.h"
+#include "core/trace/methods/natural_numbers.h"
+#include "core/trace/methods/search.h"
 
 namespace ivory {
 namespace {
 
-using Number = Interval<double>;
-using Point = Vec3<Number>;
-
-Point point(const Vec3d& p) { return {Number(p.x), Number(p.y), Number(p.z)}; }
-
-// As the paper has it: the sum of squares of intervals that know nothing of each other.
-Number square(const Point& v) { return sqr(v.x) + sqr(v.y) + sqr(v.z); }
-
-// 3-1: d = |C - P|.
-Number square_to_point(const Point& c, const Point& p) { return square(c - p); }
-
-// 3-2: with M = B - A and the foot t = M.(P - A) / |M|^2, the distance to A for t <= 0, to A + t M
-// between, to B for t >= 1; the hull of the cases that [t] allows.
-Number square_to_segment(const Point& a, const Point& b, const Point& p) {
-    const Point m = b - a;
-    const Number length_square = square(m);
-    if (length_square.hi == 0) return square_to_point(a, p);
-    const Number t = dot(m, p - a) / length_square;
-    Number s = Number::empty_set();
-    if (is_empty(t) || t.lo <= 0) s = hull(s, square_to_point(a, p));
-    if (is_empty(t) || t.hi >= 1) s = hull(s, square_to_point(b, p));
-    const Number between = intersection(t, Number(0.0, 1.0));
-    if (!is_empty(between)) s = hull(s, square(p - (a + between * m)));
-    return s;
-}
+using natural::Range;
+using natural::RayElement;
 
 // 3-3: d^2 = r^2 + |C - P|^2 - 2 r |P - C - (N.(P - C)) N|, expanded as printed.
-Number square_to_circle(const Point& c, const Point& n, const Number& r, const Point& p) {
-    const Point v = p - c;
-    const Number across = sqrt(square(v - dot(n, v) * n));
-    return sqr(r) + square(v) - Number(2.0) * r * across;
+Range expanded_circle(const RayElement& e, const Range& t) {
+    const Range whole = square(e.from, t) + Range{quick::sqr(e.radius)};
+    return less(whole, quick::scale(2, quick::mul(e.radius, sqrt(square(e.across, t)).x)));
 }
 
-// f(P) over a box of points, with what the list has left out.
-Number natural_extension(const Field& field, const ElementList& list, const Point& p) {
-    Number sum = list.rest - Number(field.threshold);
-    for (const std::uint32_t i : list.elements) {
-        Number s;
-        switch (field.shape[i]) {
-            case Shape::point:
-                s = square_to_point(point(field.a(i)), p);
-                break;
-            case Shape::segment:
-                s = square_to_segment(point(field.a(i)), point(field.b(i)), p);
-                break;
-            case Shape::circle: {
-                const Point n = point(field.b(i));
-                const Number length = sqrt(square(n));
-                s = square_to_circle(point(field.a(i)), {n.x / length, n.y / length, n.z / length},
-                                     Number(field.radius[i]), p);
-                break;
-            }
-        }
-        s = s / sqr(Number(field.width[i]));
-        // A square whose numbers overflowed bounds nothing but the kernel's own range.
-        const Number k = is_empty(s) ? Number(0.0, 1.0)
-                                     : kernel_over(field.kernel[i], {std::fmax(s.lo, 0.0), s.hi});
-        sum += Number(field.strength[i]) * k;
+// The sum of squares of intervals that know nothing of each other, as the paper has it, with the ray
+// put in: each component of P - C is one interval, each foot on a segment too.
+Range natural_extension(const natural::RayField& field, const Range& t) {
+    Range sum{field.constant()};
+    for (const RayElement& e : field.elements()) {
+        const Range s = !e.bounded                 ? Range{{0.0, infinity<double>}}
+                        : e.shape == Shape::circle ? expanded_circle(e, t)
+                                                   : square(e, t);
+        sum = sum + times(e.strength, kernel(e.kernel, s));
     }
     return sum;
 }
@@ -83,42 +44,28 @@ constexpr std::uint64_t evaluation_budget = 1'000'000;
 
 Isolation Bisection::isolate(const Field& field, const ElementList& list, const Ray& ray,
                              const MethodOptions& options, Counts& counts) const {
-    const Isolation miss{Status::miss, Interval<double>::empty_set()};
-    if (list.certainly_empty) return miss;
-    const ScaledRay scaled_ray = scaled(ray);
-    const Interval<double> span = clip(scaled_ray, field.box);
-    if (is_empty(span)) return miss;
-    if (!(span.hi < infinity<double>)) return {Status::unresolved, {0.0, infinity<double>}};
-
-    const Point origin = point(scaled_ray.origin);
-    Point direction = point(scaled_ray.direction);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        // A component that underflowed when the ray was scaled.
-        const double d = scaled_ray.direction[axis];
-        if (std::abs(d) < std::numeric_limits<double>::min() && ray.direction[axis] != 0) {
-            direction[axis] = {next_down(d), next_up(d)};
-        }
-    }
-    const double least_width = options.tolerance * field.least_width /
-                               std::sqrt(dot(scaled_ray.direction, scaled_ray.direction));
+    const Search search = begin_search(field, list, ray, options);
+    if (search.over()) return search.answer;
+    thread_local natural::RayField along;
+    along.build(field, list, ray, search.ray);
 
     // The right halves that wait while the left ones are searched: one for each halving.
     std::array<Interval<double>, 2200> waiting;
     std::size_t depth = 0;
-    waiting[depth++] = span;
+    waiting[depth++] = search.span;
     std::uint64_t evaluations = 0;
-    Isolation result = miss;
+    Isolation result = search.answer;
     while (depth > 0) {
         const Interval<double> t = waiting[--depth];
         if (++evaluations > evaluation_budget) {
-            result = {Status::unresolved, {t.lo, span.hi}};
+            result = search.result(Status::unresolved, {t.lo, search.span.hi});
             break;
         }
-        const Number f = natural_extension(field, list, origin + t * direction);
-        if (!contains(f, 0.0)) continue;
+        const Interval<double> f = natural_extension(along, {t}).x;
+        if (f.hi < 0 || f.lo > 0) continue;
         const double middle = midpoint(t);
-        if (width(t) <= least_width || middle <= t.lo || middle >= t.hi) {
-            result = {Status::claimed_hit, t};
+        if (width(t) <= search.tolerance || middle <= t.lo || middle >= t.hi) {
+            result = search.result(Status::claimed_hit, t);
             break;
         }
         waiting[depth++] = {middle, t.hi};
@@ -126,7 +73,6 @@ Isolation Bisection::isolate(const Field& field, const ElementList& list, const 
     }
     counts.evaluations += evaluations;
     counts.element_evaluations += evaluations * list.elements.size();
-    result.t = scaled_ray.unscaled(result.t);
     return result;
 }
 

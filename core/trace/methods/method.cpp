@@ -4,8 +4,13 @@
 #include <cmath>
 
 #include "core/field/surface.h"
+#include "core/trace/methods/affine.h"
 #include "core/trace/methods/bisection.h"
+#include "core/trace/methods/march.h"
+#include "core/trace/methods/newton.h"
 #include "core/trace/methods/proved.h"
+#include "core/trace/methods/segment.h"
+#include "core/trace/methods/sphere.h"
 
 namespace ivory {
 
@@ -46,7 +51,13 @@ Vec3d outward_normal(const Vec3d& gradient) {
 std::span<const Method* const> methods() {
     static const Proved proved;
     static const Bisection bisection;
-    static const std::array<const Method*, 2> all{&proved, &bisection};
+    static const AffineBisection affine;
+    static const IntervalNewton newton;
+    static const SphereTracing sphere;
+    static const SegmentTracing segment;
+    static const Marching march;
+    static const std::array<const Method*, 7> all{&proved, &bisection, &affine, &newton,
+                                                  &sphere, &segment,   &march};
     return all;
 }
 

@@ -1,0 +1,101 @@
+// Numbers to put in the place of t in core/trace/methods/natural.h: a double, an interval, and an
+// interval with the range of the derivative by t.
+#pragma once
+
+#include <cmath>
+
+#include "core/interval/quick.h"
+#include "core/trace/methods/natural.h"
+
+namespace ivory::natural {
+
+// To nearest; claims nothing.
+struct Plain {
+    double x = 0;
+};
+
+inline Plain linear(const Linear& l, Plain t) { return {l.start.lo + t.x * l.rate.lo}; }
+inline Plain constant_like(const Span& c, Plain) { return {midpoint(c)}; }
+inline Plain operator+(Plain a, Plain b) { return {a.x + b.x}; }
+inline Plain less(Plain a, const Span& b) { return {a.x - b.lo}; }
+inline Plain sqr(Plain a) { return {a.x * a.x}; }
+inline Plain sqrt(Plain a) { return {std::sqrt(a.x)}; }
+inline Plain hull(Plain, Plain b) { return b; }
+inline Span range(Plain a) { return Span(a.x); }
+inline Plain times(const Span& s, Plain a) { return {s.lo * a.x}; }
+inline Plain any_kernel(Plain) { return {0.0}; }
+inline Plain kernel(KernelKind kind, Plain s) {
+    switch (kind) {
+        case KernelKind::blinn:
+            return {exp_nearest(-s.x)};
+        case KernelKind::nishimura: {
+            if (s.x >= 1) return {0.0};
+            if (9 * s.x <= 1) return {1 - 3 * s.x};
+            const double rest = 1 - std::sqrt(s.x);
+            return {1.5 * rest * rest};
+        }
+        case KernelKind::wyvill:
+            break;
+    }
+    return {s.x >= 1 ? 0 : (1 - s.x) * (1 - s.x) * (9 - 4 * s.x) / 9};
+}
+
+// All values over an interval of t.
+struct Range {
+    Span x;
+};
+
+inline Range linear(const Linear& l, const Range& t) {
+    return {quick::add(l.start, quick::mul(t.x, l.rate))};
+}
+inline Range constant_like(const Span& c, const Range&) { return {c}; }
+inline Range operator+(const Range& a, const Range& b) { return {quick::add(a.x, b.x)}; }
+inline Range less(const Range& a, const Span& b) { return {quick::sub(a.x, b)}; }
+inline Range sqr(const Range& a) { return {quick::sqr(a.x)}; }
+inline Range sqrt(const Range& a) { return {quick::sqrt(a.x)}; }
+inline Range hull(const Range& a, const Range& b) { return {hull(a.x, b.x)}; }
+inline Span range(const Range& a) { return a.x; }
+inline Range times(const Span& s, const Range& a) { return {quick::mul(s, a.x)}; }
+inline Range any_kernel(const Range&) { return {{0.0, 1.0}}; }
+inline Range kernel(KernelKind kind, const Range& s) { return {kernel_over(kind, s.x)}; }
+
+// Values and derivatives by t over an interval of t: forward differentiation of the same formulas.
+// The derivatives of the kernels and of s pass continuously from piece to piece; at a circle's axis
+// the derivative has two sides, and both are in the slope, which is unbounded there.
+struct Dual {
+    Span x, slope;
+};
+
+inline Dual linear(const Linear& l, const Dual& t) {
+    return {quick::add(l.start, quick::mul(t.x, l.rate)), l.rate};  // the slope of t is 1
+}
+inline Dual constant_like(const Span& c, const Dual&) { return {c, Span(0.0)}; }
+inline Dual operator+(const Dual& a, const Dual& b) {
+    return {quick::add(a.x, b.x), quick::add(a.slope, b.slope)};
+}
+inline Dual less(const Dual& a, const Span& b) { return {quick::sub(a.x, b), a.slope}; }
+inline Dual sqr(const Dual& a) {
+    return {quick::sqr(a.x), quick::scale(2, quick::mul(a.x, a.slope))};
+}
+// x' / (2 sqrt x); where x can be 0 so can x', which makes the quotient the whole line.
+inline Dual sqrt(const Dual& a) {
+    const Span root = quick::sqrt(a.x);
+    const Span twice = quick::scale(2, root);
+    return {root, twice.lo > 0 ? quick::div(a.slope, twice) : a.slope / twice};
+}
+inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.slope, b.slope)}; }
+inline Span range(const Dual& a) { return a.x; }
+inline Dual times(const Span& s, const Dual& a) {
+    return {quick::mul(s, a.x), quick::mul(s, a.slope)};
+}
+inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }
+inline Dual kernel(KernelKind kind, const Dual& s) {
+    const Span k = kernel_over(kind, s.x);
+    if (kind == KernelKind::blinn) return {k, quick::mul(-k, s.slope)};
+    // k' rises with s.
+    const Span dk{kernel_slope_at(kind, std::max(s.x.lo, 0.0)).lo,
+                  kernel_slope_at(kind, s.x.hi).hi};
+    return {k, quick::mul(dk, s.slope)};
+}
+
+}  // namespace ivory::natural
