@@ -40,14 +40,33 @@ inline Plain kernel(KernelKind kind, Plain s) {
     return {s.x >= 1 ? 0 : (1 - s.x) * (1 - s.x) * (9 - 4 * s.x) / 9};
 }
 
+// start + [t] rate. For t >= 0 and a rate of one sign the ends are products of ends; each carries two
+// roundings, of the product and of the sum.
+inline Span line_over(const Linear& l, const Span& t) {
+    const bool rises = l.rate.lo >= 0;
+    if (t.lo >= 0 && (rises || l.rate.hi <= 0)) {
+        const double below = (rises ? t.lo : t.hi) * l.rate.lo;
+        const double above = (rises ? t.hi : t.lo) * l.rate.hi;
+        const double lo = l.start.lo + below, hi = l.start.hi + above;
+        const Span line{lo - ((std::abs(below) + std::abs(lo)) * 0x1.8p-52 + 0x1p-1069),
+                        hi + ((std::abs(above) + std::abs(hi)) * 0x1.8p-52 + 0x1p-1069)};
+        if (line.lo > -infinity<double> && line.hi < infinity<double>) return line;
+    }
+    return quick::add(l.start, quick::mul(t, l.rate));
+}
+
+// s a for a double s that is not 0, given as [s, s].
+inline Span multiple(const Span& s, const Span& a) {
+    return {quick::detail::lower_end(s.lo * (s.lo > 0 ? a.lo : a.hi)),
+            quick::detail::upper_end(s.lo * (s.lo > 0 ? a.hi : a.lo))};
+}
+
 // All values over an interval of t.
 struct Range {
     Span x;
 };
 
-inline Range linear(const Linear& l, const Range& t) {
-    return {quick::add(l.start, quick::mul(t.x, l.rate))};
-}
+inline Range linear(const Linear& l, const Range& t) { return {line_over(l, t.x)}; }
 inline Range constant_like(const Span& c, const Range&) { return {c}; }
 inline Range operator+(const Range& a, const Range& b) { return {quick::add(a.x, b.x)}; }
 inline Range less(const Range& a, const Span& b) { return {quick::sub(a.x, b)}; }
@@ -55,7 +74,7 @@ inline Range sqr(const Range& a) { return {quick::sqr(a.x)}; }
 inline Range sqrt(const Range& a) { return {quick::sqrt(a.x)}; }
 inline Range hull(const Range& a, const Range& b) { return {hull(a.x, b.x)}; }
 inline Span range(const Range& a) { return a.x; }
-inline Range times(const Span& s, const Range& a) { return {quick::mul(s, a.x)}; }
+inline Range times(const Span& s, const Range& a) { return {multiple(s, a.x)}; }
 inline Range any_kernel(const Range&) { return {{0.0, 1.0}}; }
 inline Range kernel(KernelKind kind, const Range& s) { return {kernel_over(kind, s.x)}; }
 
@@ -67,7 +86,7 @@ struct Dual {
 };
 
 inline Dual linear(const Linear& l, const Dual& t) {
-    return {quick::add(l.start, quick::mul(t.x, l.rate)), l.rate};  // the slope of t is 1
+    return {line_over(l, t.x), l.rate};  // the slope of t is 1
 }
 inline Dual constant_like(const Span& c, const Dual&) { return {c, Span(0.0)}; }
 inline Dual operator+(const Dual& a, const Dual& b) {
@@ -86,7 +105,7 @@ inline Dual sqrt(const Dual& a) {
 inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.slope, b.slope)}; }
 inline Span range(const Dual& a) { return a.x; }
 inline Dual times(const Span& s, const Dual& a) {
-    return {quick::mul(s, a.x), quick::mul(s, a.slope)};
+    return {multiple(s, a.x), multiple(s, a.slope)};
 }
 inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }
 inline Dual kernel(KernelKind kind, const Dual& s) {
