@@ -49,7 +49,8 @@ double slope_of(KernelKind kind, double least, double peak) {
 // eta_slope that of its direction, both in widths. Blinn's: the computed s is off by
 //     ds <= 2 sqrt(s) eta + eta^2 + 7 u s,
 // five roundings of the square and one of 1 / w^2; the exponential adds 2 u, so that with
-// e^ds <= 1.02 |dk| <= 1.02 e^-s (ds + 2 u). Now e^-s s^(j/2) <= peak (sqrt(least) + c_j)^j with
+// e^ds <= 1.02 |dk| <= 1.02 e^-s (ds + 2 u). (For s in the hundreds e^ds is larger, but then
+// e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak (sqrt(least) + c_j)^j with
 // c_j < 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2) e^-y are 0.43,
 // 0.37, 0.41 for j = 1, 2, 3. With r = sqrt(least) + 1 that is at most
 //     |dF|  <= |b| peak (3 eta r + 10 u r^2),
@@ -139,7 +140,8 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
             e.m = field.b(i) - field.a(i);
             const double square = dot(e.m, e.m);
             e.length = std::sqrt(square);
-            e.extra = square > 0 ? 1 / square : 0;
+            // A segment as short as that counts as its end a; `etas` adds its length.
+            e.extra = e.length > 1e-40 ? 1 / square : 0;
         } else if (field.shape[i] == Shape::circle) {
             const Vec3d n = field.b(i);
             const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
@@ -180,7 +182,9 @@ double BundleField::distance(const Element& e, double t) const {
 
 namespace {
 
-// (1) of bundle.h: a lower bound of the distance between two places L apart from those there.
+// (1) of bundle.h: a lower bound of the distance between two places at most L apart from lower
+// bounds of those there, with which it rises. Errors have to be taken off before: near 0 the result
+// follows their square roots.
 double least_between(double d0, double d1, double L) {
     const double square0 = d0 * d0, square1 = d1 * d1, squareL = L * L;
     const double half = 0.5 * (squareL + square0 - square1);  // of y L^2 at the vertex
@@ -211,7 +215,8 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
         const KernelKind kind = kernel_of(e.group);
         const double error = (e.far + t1) * margin;
         const double d0 = distance(e, t0), d1 = distance(e, t1);
-        const double near = least_between(d0, d1, L) - error - aside;
+        const double near =
+            least_between(std::max(d0 - error, 0.0), std::max(d1 - error, 0.0), L) - aside;
         // The distance to any set changes by at most L over the window; to a convex one it is
         // convex.
         const double far = (shape_of(e.group) == Shape::circle ? 0.5 * (d0 + d1 + L)
@@ -230,8 +235,9 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
         if (e.strength > 0) above += most;
         here.active.push_back(a);
     }
-    here.rest_above *= more;
-    here.rest_below *= more;
+    const double sums = 1 + static_cast<double>(count + 64) * 0x1p-52;
+    here.rest_above *= sums;
+    here.rest_below *= sums;
     const double slack = static_cast<double>(here.active.size() + 4) * 0x1p-52 * (sum + threshold_);
     if (above + here.rest_above + slack < threshold_) return false;
 
@@ -265,8 +271,10 @@ void BundleField::bend(const Element& e, Active& a, double t0, double t1, double
             const Vec3d across = v - dot(v, e.m) * e.m;
             return std::sqrt(dot(across, across));
         };
-        const double rho = least_between(rho_at(t0), rho_at(t1), (t1 - t0) * more) -
-                           (e.far + t1) * margin - t1 * spread_ * more;
+        const double error = (e.far + t1) * margin;
+        const double rho = least_between(std::max(rho_at(t0) - error, 0.0),
+                                         std::max(rho_at(t1) - error, 0.0), (t1 - t0) * more) -
+                           t1 * spread_ * more;
         const double inverse = 1 / rho;
         if (e.extra == 0) {
             a.inverse = 0;
@@ -292,12 +300,13 @@ void BundleField::bend(const Element& e, Active& a, double t0, double t1, double
             const double far = std::max(std::abs(x0), std::abs(x1));
             y0 = near * near * e.inverse_square * less;
             y1 = far * far * e.inverse_square * more;
-            fall = 2 * std::max(1 - 2 * y0, 0.0) * a.peak;
+            fall = (2 * std::max(1 - 2 * y0, 0.0) + margin) * a.peak;
         } else {
             fall = 2 * a.peak;
         }
         const double y = y1 <= 1.5 ? y1 : y0 >= 1.5 ? y0 : 1.5;  // (2 y - 1) e^-y rises up to 1.5
         if (y > 0.5) rise = 2 * (2 * y - 1) * peak_of(kind, y + h_square);
+        rise += margin * a.peak;  // |d|^2 is 1 but for 2^-49
         rise += 2 * outward * a.peak;
         return;
     }
@@ -371,7 +380,8 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
                 double eta = p_error + (e.far + t1) * 0x1p-50 * (u == fine_u ? 0 : 1);
                 double eta_slope = 0;
                 if (shape == Shape::segment) {
-                    eta = 2 * eta + u * (12 * v_length + 3 * e.length);
+                    eta = 2 * eta + u * (12 * v_length + 3 * e.length) +
+                          (e.extra == 0 ? e.length : 0);
                 } else if (shape == Shape::circle) {
                     eta = 3 * eta + u * (16 * v_length + 3 * e.extra);
                     eta_slope = kinked ? 0 : e.extra * a.inverse * (4 * eta + 16 * u * v_length);
@@ -426,13 +436,16 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
             ++w.coarse_count[group];
         }
     }
-    const auto rounding = [&](double u, std::size_t n, double sum) {
-        return static_cast<double>(n + 4) * u * (sum + threshold_) * more;
+    const double sums = 1 + static_cast<double>(here.active.size() + 64) * 0x1p-51;
+    const auto rounding = [&](double u, std::size_t count, double sum) {
+        return static_cast<double>(count + 4) * u * (sum + threshold_) * sums;
     };
+    coarse.above *= sums;
+    coarse.below *= sums;
     const double coarse_rounding =
-        coarse_error * more + rounding(coarse_u, w.coarse.size(), coarse_sum) + 1e-30;
+        coarse_error * sums + rounding(coarse_u, w.coarse.size(), coarse_sum) + 1e-30;
     const double fine_rounding =
-        fine_error * more + rounding(fine_u, w.fine.size(), fine_sum) + 1e-280;
+        fine_error * sums + rounding(fine_u, w.fine.size(), fine_sum) + 1e-280;
     coarse.above += coarse_rounding;
     coarse.below += coarse_rounding;
     fine.above += fine_rounding;
@@ -444,11 +457,14 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
         slope_sum += 2 * std::abs(e.strength) / e.width * slope_of(kernel_of(e.group), a.least, a.peak);
     }
     const double n = static_cast<double>(here.active.size() + 4);
-    coarse.slope = (coarse.slope + n * coarse_u * slope_sum) * unit_ * more + 1e-30;
-    fine.slope = (fine.slope + n * fine_u * slope_sum) * more + 1e-280;
+    coarse.slope = (coarse.slope + n * coarse_u * slope_sum) * unit_ * sums + 1e-30;
+    fine.slope = (fine.slope + n * fine_u * slope_sum) * sums + 1e-280;
     w.coarse_bounds = coarse;
     w.fine_bounds = fine;
-    w.coarse_usable = usable;
+    // No product of the walk's formulas comes near the end of float.
+    w.coarse_usable = usable && (coarse_sum + threshold_) * w.rise * unit_ * unit_ < 1e30 &&
+                      (coarse_sum + threshold_) * w.fall * unit_ * unit_ < 1e30 &&
+                      slope_sum * unit_ < 1e14 && coarse.slope < 1e14;
 }
 
 }  // namespace ivory

@@ -10,8 +10,10 @@
 // on the whole window. From the least s = (D / w)^2 come, for each element,
 //     a bound of |F|; elements below a cut leave the list and join an interval that is kept;
 //     bounds of f'' (for a window free of kinks; else of |f'|), as sup of k'' s'^2 + k' s'',
-//         with s'^2 = 4 x^2 / w^2, x = away . d / w, x^2 <= s, and s'' = 2 / w^2 for a point,
-//         0 .. 2 / w^2 for a segment, 2 / w^2 (1 - r rho'') for a circle, 0 <= rho'' <= 1 / rho;
+//         with s'^2 = 4 x^2 / w^2, x = away . d / w, x^2 <= s, and s'' = 2 / w^2 for a point;
+//         2 a / w^2 for a segment, where x^2 <= a s, a <= 1 (a = 1 about its ends, the squared sine
+//         of the angle between ray and segment along it); 2 / w^2 (1 - r rho'') for a circle,
+//         0 <= rho'' <= 1 / rho;
 //     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
 //
 // Lengths in float stages are in units of `unit`, a power of two, and relative to the middle of the
@@ -62,7 +64,8 @@ struct Window {
     double begin = 0, middle = 0, end = 0;  // t
     float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
 
-    // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per unit^2 (scaled T).
+    // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per square of a scene
+    // unit.
     double rise = 0, fall = 0;
 
     std::vector<BundleEntry<float>> coarse;  // p - c with p relative to the middle
@@ -89,9 +92,11 @@ class BundleField {
 
     // Calls visit(window) for windows from front to back until it returns false; f < 0 certainly
     // holds on the parts of span() between them. Which windows there are depends on field, list,
-    // bundle and tolerance alone. Those that wanted(begin, end) denies are passed over.
+    // bundle and tolerance alone. Those that wanted(begin, end) denies are passed over. When
+    // `budget` stretches of t have been bounded, one that is not `coarse_usable` is the last.
     template <class Wanted, class Visit>
-    void for_windows(const Wanted& wanted, const Visit& visit) {
+    void for_windows(const Wanted& wanted, int budget, const Visit& visit) {
+        left_ = budget;
         if (!is_empty(span_)) descend(0, span_.lo, span_.hi, wanted, visit);
     }
 
@@ -138,7 +143,13 @@ class BundleField {
                  const Visit& visit) {
         // Float cannot name the ends: what is bounded is a little longer.
         const double pad = 0x1p-20 * (t1 - t0);
-        if (!wanted(t0, t1) || !bound(depth, t0 - pad, t1 + pad)) return true;
+        if (!wanted(t0, t1)) return true;
+        if (left_-- <= 0) {
+            window_.coarse_usable = false;
+            visit(static_cast<const Window&>(window_));
+            return false;
+        }
+        if (!bound(depth, t0 - pad, t1 + pad)) return true;
         const double middle = 0.5 * (t0 + t1);
         if (middle > t0 && middle < t1 && splits(depth, t0, t1)) {
             return descend(depth + 1, t0, middle, wanted, visit) &&
@@ -157,6 +168,7 @@ class BundleField {
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double coarse_cut_ = 0, fine_cut_ = 0;
     double rest_above_ = 0, rest_below_ = 0;
+    int left_ = 0;  // of the budget
 };
 
 }  // namespace ivory

@@ -337,20 +337,29 @@ class FrameJob::Work {
         TracedTile traced;
         gather(traced, index, strides_[pass], pass > 0 ? strides_[pass - 1] : 0);
         const std::span<Isolation> isolations(traced.isolations.data(), traced.size());
+        const std::span<SurfacePoint> surfaces(traced.surfaces.data(),
+                                               wants_surface() ? traced.size() : 0);
         const Field& field = *picture_.field;
-        picture_.method->isolate_bundle(field, tile.list, traced.rays, picture_.options, isolations,
-                                        tally.counts);
+        picture_.method->trace_bundle(field, tile.list, traced.rays, picture_.options, isolations,
+                                      surfaces, tally.counts);
         // What the list leaves open may be closed by the elements that it left out.
         const bool all_were_there = tile.list.rest.lo == 0 && tile.list.rest.hi == 0;
+        std::array<double, pixels_in_tile> again;
+        bool any = false;
         for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
+            again[k] = infinity<double>;
             if (isolations[k].status != Status::unresolved) continue;
             isolations[k] = picture_.method->isolate(field, all_, traced.rays.ray(k),
                                                      picture_.options, tally.counts);
+            if (surfaces.empty() || !possibly_hit(isolations[k].status)) continue;
+            again[k] = midpoint(isolations[k].t);
+            any = true;
         }
+        if (any) find_surface(traced, tile.list, again);
         if (stopped()) return false;
         const Clock::time_point between = Clock::now();
         tally.tracing += between - start;
-        look_at(traced, tile.list);
+        paint(traced);
         commit(index, pass, traced);
         tally.shading += Clock::now() - between;
         notify(index);
@@ -384,19 +393,23 @@ class FrameJob::Work {
                            traced.rays.dz.data());
     }
 
-    // The surface, and its colour in the light, as far as the task wants them.
-    void look_at(TracedTile& traced, const ElementList& list) const {
-        const bool shaded = settings_.task != Task::trace;
-        if (!shaded && canvas_.frame.surface.empty()) return;
-        std::array<double, pixels_in_tile> m;
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            const Isolation& isolation = traced.isolations[k];
-            m[k] = possibly_hit(isolation.status) ? midpoint(isolation.t) : infinity<double>;
-        }
+    bool shaded() const { return settings_.task != Task::trace; }
+    bool wants_surface() const { return shaded() || !canvas_.frame.surface.empty(); }
+
+    // The surface at those m that are finite; the others keep theirs.
+    void find_surface(TracedTile& traced, const ElementList& list,
+                      const std::array<double, pixels_in_tile>& m) const {
+        std::array<SurfacePoint, pixels_in_tile> found;
         picture_.method->surface_bundle(*picture_.field, list, traced.rays, picture_.options,
-                                        {m.data(), traced.size()},
-                                        {traced.surfaces.data(), traced.size()});
-        if (!shaded) return;
+                                        {m.data(), traced.size()}, {found.data(), traced.size()});
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            if (m[k] < infinity<double>) traced.surfaces[k] = found[k];
+        }
+    }
+
+    // The colours of the surface in the light.
+    void paint(TracedTile& traced) const {
+        if (!shaded()) return;
         ShadingLanes lanes;
         std::array<std::uint16_t, pixels_in_tile> lane;
         for (std::size_t k = 0; k < traced.size(); ++k) {
@@ -450,12 +463,14 @@ class FrameJob::Work {
             if (stopped()) return false;
             TracedTile traced;
             gather(traced, index, tile.stride, 0);
+            std::array<double, pixels_in_tile> m;
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
                 traced.isolations[k] = {frame.status[p], {}};
-                if (possibly_hit(frame.status[p])) traced.isolations[k].t = frame.t(p);
+                m[k] = possibly_hit(frame.status[p]) ? midpoint(frame.t(p)) : infinity<double>;
             }
-            look_at(traced, tile.list);
+            find_surface(traced, tile.list, m);
+            paint(traced);
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
                 frame.color[p] = traced.colors[k];

@@ -1,6 +1,8 @@
 #include "core/render/shade_lanes.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+// As in core/trace/packet_steps.cpp.
+#define HWY_DISABLED_TARGETS \
+    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/render/shade_lanes.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set

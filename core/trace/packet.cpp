@@ -1,9 +1,27 @@
 #include "core/trace/packet.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace ivory {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Stretches of t that are bounded for one bundle; if that is not enough, its rays are better traced
+// one by one.
+constexpr int budget = 1024;
+
+// The t up to which origin + t direction in plain double, off by 2^-53 times its terms, is close
+// enough for normals and colours.
+double exact_limit(const Field& field, const Bundle& bundle) {
+    const Vec3d& o = bundle.origin;
+    const double limit = 1e4 * field.least_width;
+    return std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < limit ? limit : 0;
+}
+
+}  // namespace
 
 void PacketTracer::take(const RayBundle& rays) {
     lanes_.count = rays.count;
@@ -14,7 +32,8 @@ void PacketTracer::take(const RayBundle& rays) {
 
 void PacketTracer::isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                            const Settings& settings, std::span<Isolation> isolations,
-                           Counts& counts) {
+                           std::span<SurfacePoint> surfaces, Counts& counts) {
+    for (SurfacePoint& surface : surfaces) surface.normal = {nan, nan, nan};
     const Interval<double> nothing = Interval<double>::empty_set();
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance)) {
         std::fill(isolations.begin(), isolations.end(), Isolation{Status::unresolved, nothing});
@@ -24,13 +43,11 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     take(rays);
     steps.prepare(lanes_, rays.bundle.axis);
     const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
-    const auto state_is = [](Lanes::State state) {
-        return [state](std::int32_t s) { return s == state; };
-    };
+    const double limit = surfaces.empty() ? 0 : exact_limit(field, rays.bundle);
     const auto begin = lanes_.state.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(rays.count);
     bundle_field_.for_windows(
-        [](double, double) { return true; },
+        [](double, double) { return true; }, budget,
         [&](const Window& window) {
             if (!window.coarse_usable) {
                 std::replace(begin, end, std::int32_t{Lanes::walking},
@@ -43,7 +60,19 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             counts.evaluations += walked + enclosed;
             counts.element_evaluations +=
                 walked * window.coarse.size() + enclosed * window.fine.size();
-            return std::any_of(begin, end, state_is(Lanes::walking));
+            index_.clear();
+            t_.clear();
+            bool more = false;
+            for (std::size_t k = 0; k < rays.count; ++k) {
+                more = more || lanes_.state[k] == Lanes::walking;
+                if (lanes_.state[k] != Lanes::hit) continue;
+                const double m = midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]));
+                if (!(m >= window.begin && m < window.end && m < limit)) continue;
+                index_.push_back(static_cast<std::uint32_t>(k));
+                t_.push_back(m);
+            }
+            surface_in(window, field, surfaces);
+            return more;
         });
     for (std::size_t k = 0; k < rays.count; ++k) {
         switch (lanes_.state[k]) {
@@ -62,38 +91,38 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
 void PacketTracer::surface(const Field& field, const ElementList& list, const RayBundle& rays,
                            double tolerance, std::span<const double> m,
                            std::span<SurfacePoint> surfaces) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    double first = infinity<double>, last = -infinity<double>, distance = 0;
     for (std::size_t k = 0; k < rays.count; ++k) {
-        surfaces[k].normal = {nan, nan, nan};
-        if (!(m[k] < infinity<double>)) continue;
-        first = std::min(first, m[k]);
-        last = std::max(last, m[k]);
+        if (std::isfinite(m[k])) surfaces[k].normal = {nan, nan, nan};
     }
-    if (!(first <= last)) return;
-    // In plain double, origin + m direction is off by 2^-53 times its terms.
-    const Vec3d& o = rays.bundle.origin;
-    distance = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z), last});
-    if (!(distance < 1e4 * field.least_width)) return;
     if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
     take(rays);
-    const PacketSteps& steps = packet_steps();
+    const double limit = exact_limit(field, rays.bundle);
+    const auto in = [&](double t0, double t1) {
+        return [=](double t) { return t >= t0 && t < t1 && t < limit; };
+    };
     bundle_field_.for_windows(
-        [&](double t0, double t1) { return t0 <= last && t1 >= first; },
+        [&](double t0, double t1) { return std::any_of(m.begin(), m.end(), in(t0, t1)); },
+        std::numeric_limits<int>::max(),
         [&](const Window& window) {
             index_.clear();
             t_.clear();
             for (std::size_t k = 0; k < rays.count; ++k) {
-                if (!(m[k] >= window.begin && m[k] < window.end)) continue;
+                if (!in(window.begin, window.end)(m[k])) continue;
                 index_.push_back(static_cast<std::uint32_t>(k));
                 t_.push_back(m[k]);
             }
-            if (index_.empty()) return true;
-            points_.resize(index_.size());
-            steps.surface(window, field, lanes_, index_, t_.data(), points_.data());
-            for (std::size_t k = 0; k < index_.size(); ++k) surfaces[index_[k]] = points_[k];
-            return window.end <= last;
+            surface_in(window, field, surfaces);
+            return true;
         });
+}
+
+// Of the lanes index_ at t_.
+void PacketTracer::surface_in(const Window& window, const Field& field,
+                              std::span<SurfacePoint> surfaces) {
+    if (index_.empty()) return;
+    points_.resize(index_.size());
+    packet_steps().surface(window, field, lanes_, index_, t_.data(), points_.data());
+    for (std::size_t k = 0; k < index_.size(); ++k) surfaces[index_[k]] = points_[k];
 }
 
 std::string_view packet_target() {

@@ -31,21 +31,24 @@ class PacketTracer {
     };
 
     // hit and miss are proved; unresolved (with nothing in t) says that the ray has to be traced by
-    // other means. `list` has to be valid on the bundle.
+    // other means. `list` has to be valid on the bundle. Where `surfaces` is not empty it gets what
+    // `surface` would give for the hits' midpoints, or a normal of NaN.
     void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
-                 const Settings& settings, std::span<Isolation> isolations, Counts& counts);
+                 const Settings& settings, std::span<Isolation> isolations,
+                 std::span<SurfacePoint> surfaces, Counts& counts);
 
-    // Normal and colour at m[k] of ray k, where that is finite; a normal of NaN where they have to
-    // be found by other means.
+    // Normal and colour at m[k] of ray k, where that is finite; the others stay. A normal of NaN
+    // where they have to be found by other means.
     void surface(const Field& field, const ElementList& list, const RayBundle& rays,
                  double tolerance, std::span<const double> m, std::span<SurfacePoint> surfaces);
 
   private:
     void take(const RayBundle& rays);
+    void surface_in(const Window& window, const Field& field, std::span<SurfacePoint> surfaces);
 
     BundleField bundle_field_;
     Lanes lanes_;
-    std::vector<std::uint32_t> index_;
+    std::vector<std::uint32_t> index_;  // of lanes in a window, and their t
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;
 };

@@ -5,8 +5,10 @@
 
 #include "core/interval/exp.h"
 
-// Of no use here beside SSE2, SSE4, AVX2 and AVX-512, and each takes its time to build.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+// Vectors without a fixed length are no members of structures; the others are of no use beside SSE2,
+// SSE4, AVX2 and AVX-512.
+#define HWY_DISABLED_TARGETS \
+    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
@@ -244,7 +246,7 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
                               hn::Mul(t_middle, hn::Load(d, &lanes.ez[first]))};
         V<F> tau = begin, guess_lo = zero, guess_hi = zero;
         M<F> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
-        int guesses = 0;
+        V<F> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
         for (int step = 0; step < most_steps; ++step) {
             steps += hn::CountTrue(d, hn::Or(walking, guessing));
             const Vec3v<F> p{hn::MulAdd(tau, direction.x, middle.x),
@@ -256,8 +258,10 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
             // A guess follows Newton, kept where the root is known to be.
             const V<F> newton =
                 hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), guess_lo), guess_hi);
+            guesses = hn::Add(guesses, hn::IfThenElseZero(guessing, c(1)));
             const M<F> settles =
-                hn::And(guessing, hn::Le(hn::Abs(hn::Sub(newton, tau)), settled));
+                hn::And(guessing, hn::Or(hn::Le(hn::Abs(hn::Sub(newton, tau)), settled),
+                                         hn::Ge(guesses, c(most_guesses))));
 
             // f(tau) < 0 must be certain for anything else to be.
             const V<F> f_hi = hn::Add(value.f, above);
@@ -291,23 +295,25 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
             const V<F> safe =
                 hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
             const M<F> steps_on = hn::AndNot(rises, walking);
-            undecided = hn::Or(undecided, hn::And(steps_on, hn::Le(safe, slack)));
+            // Nothing gets on, or a number is lost: not slack < safe < infinity.
+            undecided = hn::Or(
+                undecided, hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
             const V<F> next = hn::Add(tau, safe);
 
             // Lanes change their ways.
             guess_lo = hn::IfThenElse(rises, tau, guess_lo);
             guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
-            tau = hn::IfThenElse(hn::Or(guessing, rises),
-                                 hn::IfThenElse(rises, hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau), newton), hn::IfThenElse(steps_on, next, tau));
+            const V<F> first_guess = hn::Min(
+                hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau);
+            tau = hn::IfThenElse(steps_on, next, tau);
+            tau = hn::IfThenElse(guessing, newton, tau);
+            tau = hn::IfThenElse(rises, first_guess, tau);
             found = hn::Or(found, settles);
             guessing = hn::Or(hn::AndNot(settles, guessing), rises);
             walking = hn::AndNot(hn::Or(undecided, hn::Ge(tau, end)), steps_on);
-            if (hn::AllFalse(d, walking)) {
-                if (hn::AllFalse(d, guessing) || ++guesses == most_guesses) break;
-            }
+            if (hn::AllFalse(d, hn::Or(walking, guessing))) break;
         }
-        found = hn::Or(found, guessing);
-        undecided = hn::Or(undecided, walking);  // no end of steps
+        undecided = hn::Or(undecided, hn::Or(walking, guessing));  // no end of steps
         state = hn::IfThenElse(hn::RebindMask(di, found), hn::Set(di, Lanes::candidate), state);
         state = hn::IfThenElse(hn::RebindMask(di, undecided), hn::Set(di, Lanes::undecided), state);
         hn::Store(state, di, &lanes.state[first]);

@@ -20,11 +20,14 @@ SurfacePoint Method::surface(const Field& field, const ElementList& list, const 
     return {outward_normal(at.gradient), at.color};
 }
 
-void Method::isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                            const MethodOptions& options, std::span<Isolation> isolations,
-                            Counts& counts) const {
+void Method::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                          const MethodOptions& options, std::span<Isolation> isolations,
+                          std::span<SurfacePoint> surfaces, Counts& counts) const {
     for (std::size_t k = 0; k < rays.size(); ++k) {
         isolations[k] = isolate(field, list, rays.ray(k), options, counts);
+        const Status status = isolations[k].status;
+        if (surfaces.empty() || status == Status::miss || status == Status::claimed_miss) continue;
+        surfaces[k] = surface(field, list, rays.ray(k), midpoint(isolations[k].t), options);
     }
 }
 

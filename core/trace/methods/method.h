@@ -37,12 +37,13 @@ class Method {
                                                const Ray& ray, double m,
                                                const MethodOptions& options) const;
 
-    // The same for all rays of a bundle, for which `list` has to be valid; one isolation for each.
-    virtual void isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                                const MethodOptions& options, std::span<Isolation> isolations,
-                                Counts& counts) const;
+    // The same for all rays of a bundle, for which `list` has to be valid: one isolation for each,
+    // and, unless `surfaces` is empty, the surface at the midpoints of those that may be hits.
+    virtual void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                              const MethodOptions& options, std::span<Isolation> isolations,
+                              std::span<SurfacePoint> surfaces, Counts& counts) const;
 
-    // Normal and colour of each ray at its m; where that is not finite, nothing is written.
+    // Normal and colour of each ray at its m; where that is not finite, they are not defined.
     virtual void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                                 const MethodOptions& options, std::span<const double> m,
                                 std::span<SurfacePoint> surfaces) const;

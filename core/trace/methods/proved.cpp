@@ -1,6 +1,7 @@
 #include "core/trace/methods/proved.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/field/inclusion.h"
@@ -76,18 +77,28 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     return isolation;
 }
 
-void Proved::isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                            const MethodOptions& options, std::span<Isolation> isolations,
-                            Counts& counts) const {
+void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                          const MethodOptions& options, std::span<Isolation> isolations,
+                          std::span<SurfacePoint> surfaces, Counts& counts) const {
     const PacketTracer::Settings settings{options.tolerance,
                                           greatest_cell(field, options.tolerance)};
     thread_local PacketTracer packets;
-    packets.isolate(field, list, rays, settings, isolations, counts);
+    packets.isolate(field, list, rays, settings, isolations, surfaces, counts);
+    std::array<double, RayBundle::capacity> m;
+    bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
+        m[k] = infinity<double>;
         if (isolations[k].status == Status::unresolved) {
             isolations[k] = isolate(field, list, rays.ray(k), options, counts);
         }
+        if (surfaces.empty() || isolations[k].status == Status::miss ||
+            !std::isnan(surfaces[k].normal.x)) {
+            continue;
+        }
+        m[k] = midpoint(isolations[k].t);
+        left = true;
     }
+    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, surfaces);
 }
 
 void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
@@ -97,7 +108,7 @@ void Proved::surface_bundle(const Field& field, const ElementList& list, const R
     packets.surface(field, list, rays, options.tolerance, m, surfaces);
     for (std::size_t k = 0; k < rays.size(); ++k) {
         // NaN: the packets leave it to one ray at a time.
-        if (m[k] < infinity<double> && std::isnan(surfaces[k].normal.x)) {
+        if (std::isfinite(m[k]) && std::isnan(surfaces[k].normal.x)) {
             surfaces[k] = surface(field, list, rays.ray(k), m[k], options);
         }
     }

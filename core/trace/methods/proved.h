@@ -15,9 +15,9 @@ class Proved final : public Method {
     }
     [[nodiscard]] Isolation isolate(const Field& field, const ElementList& list, const Ray& ray,
                                     const MethodOptions& options, Counts& counts) const override;
-    void isolate_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                        const MethodOptions& options, std::span<Isolation> isolations,
-                        Counts& counts) const override;
+    void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                      const MethodOptions& options, std::span<Isolation> isolations,
+                      std::span<SurfacePoint> surfaces, Counts& counts) const override;
     void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                         const MethodOptions& options, std::span<const double> m,
                         std::span<SurfacePoint> surfaces) const override;

@@ -57,13 +57,14 @@ struct Case {
 
 class PacketOfRays : public testing::TestWithParam<Case> {};
 
-// What packets decide by themselves is what one ray alone is answered, to the bit; and of some of
-// them the reference says the same.
+// What packets decide by themselves is what one ray alone is answered: the same grid lines, or where
+// rounding hides a sign from the single ray, some between its own. Of some the reference says the
+// same. And what is decided of a ray does not depend on the others.
 TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     const Case& c = GetParam();
     const Proved proved;
     PacketTracer packets;
-    int rays_traced = 0, decided = 0, hits = 0, judged = 0;
+    int rays_traced = 0, decided = 0, hits = 0, judged = 0, wider = 0;
     for (std::uint64_t seed = 7100; seed < 7106; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Scene scene = random_scene(c.recipe, seed);
@@ -80,7 +81,23 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                 const auto rays = bundle_around(ray, spread, 5 + random.below(40), random);
                 std::array<Isolation, RayBundle::capacity> found;
                 Counts counts;
-                packets.isolate(field, list, *rays, settings, {found.data(), rays->size()}, counts);
+                packets.isolate(field, list, *rays, settings, {found.data(), rays->size()}, {},
+                                counts);
+                // Every third of them without the others.
+                const auto some = std::make_unique<RayBundle>();
+                some->bundle = rays->bundle;
+                for (std::size_t k = 0; k < rays->size(); k += 3) {
+                    some->add(rays->ray(k).direction);
+                }
+                std::array<Isolation, RayBundle::capacity> again;
+                packets.isolate(field, list, *some, settings, {again.data(), some->size()}, {},
+                                counts);
+                for (std::size_t k = 0; k < some->size(); ++k) {
+                    ASSERT_EQ(again[k].status, found[3 * k].status);
+                    if (again[k].status != Status::hit) continue;
+                    ASSERT_EQ(again[k].t.lo, found[3 * k].t.lo);
+                    ASSERT_EQ(again[k].t.hi, found[3 * k].t.hi);
+                }
                 for (std::size_t k = 0; k < rays->size(); ++k) {
                     ++rays_traced;
                     if (found[k].status == Status::unresolved) continue;
@@ -90,8 +107,9 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                                                            {.tolerance = c.tolerance}, counts);
                     ASSERT_EQ(found[k].status, alone.status);
                     if (alone.status == Status::hit) {
-                        ASSERT_EQ(found[k].t.lo, alone.t.lo);
-                        ASSERT_EQ(found[k].t.hi, alone.t.hi);
+                        ASSERT_GE(found[k].t.lo, alone.t.lo);
+                        ASSERT_LE(found[k].t.hi, alone.t.hi);
+                        wider += found[k].t.lo != alone.t.lo || found[k].t.hi != alone.t.hi;
                     }
                     if (random.below(200) != 0) continue;
                     Answer answer{found[k], {}};
@@ -109,6 +127,7 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     }
     EXPECT_EQ(hits > 0, c.hits);
     EXPECT_GT(judged, 0);
+    EXPECT_LE(wider, hits / 500);
     EXPECT_GE(decided, c.least_decided * rays_traced);
     std::printf("%d rays, %d decided by packets, %d hits, %d judged by the reference; %s\n",
                 rays_traced, decided, hits, judged, std::string(packet_target()).c_str());
@@ -126,6 +145,81 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"large", {.elements = 8, .scale = 1e6}, 1e-9, 0.5},
                     Case{"critical", {.elements = 8, .critical = true}, 1e-9, 0.2}),
     [](const auto& test_case) { return std::string(test_case.param.name); });
+
+Element point(const Vec3d& position, double strength, double width) {
+    Element element;
+    element.skeleton = PointSkeleton{position};
+    element.strength = strength;
+    element.width = width;
+    return element;
+}
+
+Isolation alone_in_packet(const Scene& scene, const Ray& ray, double tolerance) {
+    const Field field = compile(scene);
+    PacketTracer packets;
+    const auto rays = std::make_unique<RayBundle>();
+    rays->add(ray.direction);
+    rays->bundle = {ray.origin, ray.direction, 1e-15};
+    Isolation found;
+    Counts counts;
+    packets.isolate(field, all_elements(field), *rays,
+                    {tolerance, 0.5 * std::min(tolerance, 0x1p-20) * field.least_width},
+                    {&found, 1}, {}, counts);
+    return found;
+}
+
+// The axis passes through a skeleton far away and the surface is tiny around it: the distances at
+// the ends of a window add up to its length but for rounding.
+TEST(Packet, ATinySurfaceFarAwayOnTheAxisIsNotMissed) {
+    Random random(5);
+    for (const double distance : {1e5, 1e6, 1e8}) {
+        Scene scene;
+        scene.threshold = 1 - distance * 1e-17;
+        Element segment;
+        segment.skeleton = SegmentSkeleton{{0, 0, 0}, {0, 0, 0}};
+        scene.elements = {segment, point({30, 30, 30}, 1, 1)};
+        for (int n = 0; n < 40; ++n) {
+            const Vec3d to = unit(unit(random.in_cube(1)));
+            const Ray ray{{-distance * to.x, -distance * to.y, -distance * to.z}, to};
+            const Field field = compile(scene);
+            Counts counts;
+            const Isolation scalar =
+                Proved().isolate(field, all_elements(field), ray, {.tolerance = 1e-6}, counts);
+            if (scalar.status != Status::hit) continue;
+            EXPECT_NE(alone_in_packet(scene, ray, 1e-6).status, Status::miss)
+                << distance << ", ray " << n;
+        }
+    }
+}
+
+// Strengths and widths at the end of what is let through: products of theirs leave float.
+TEST(Packet, NumbersBeyondFloatAreLeftToOtherMeans) {
+    for (double off = 0; off < 16; off += 0.5) {
+        Scene scene;
+        scene.threshold = 1;
+        scene.elements = {point({0, 0, 0}, 3, 1), point({-2e4 - off, 5, 0}, 3, 1),
+                          point({2.5e8, 50, 0}, 3, 1), point({0, 0, 0}, 1e-6, 9e5)};
+        for (int k = 0; k < 40; ++k) scene.elements.push_back(point({-6, 0, 0}, -0.99e12, 1));
+        EXPECT_NE(alone_in_packet(scene, {{-2e4 - off - 5, 0, 0}, {1, 0, 0}}, 1e-6).status,
+                  Status::miss)
+            << off;
+    }
+}
+
+// Two large strengths that cancel: windows would become ever shorter.
+TEST(Packet, WorkIsBounded) {
+    Scene scene;
+    scene.threshold = 1;
+    scene.elements = {point({0, 0, 0}, 1e8, 1), point({0, 0, 0.001}, -1e8, 1)};
+    const Field field = compile(scene);
+    PacketTracer packets;
+    Random random(6);
+    const auto rays = bundle_around({{0.1, 0.2, 20}, {0, 0, -1}}, 0.05, 256, random);
+    std::array<Isolation, RayBundle::capacity> found;
+    Counts counts;
+    packets.isolate(field, all_elements(field), *rays, {1e-6, 0.5 * 0x1p-20}, found, {}, counts);
+    EXPECT_LT(counts.evaluations, 256u * 60 * 1024);
+}
 
 }  // namespace
 }  // namespace ivory
