@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
-"""How the time grows: with the elements at the same covered area, the pixels, the threads."""
+"""How the time grows: with the elements at the same covered area, the pixels, the threads.
+
+Rows by threads have `side_by_side`, the time of as many independent runs of one thread at once: n
+threads can at best take an n-th of it, and `efficiency` is the share of that which they reach."""
 
 import argparse
+import concurrent.futures
 import os
 import pathlib
 
@@ -41,8 +45,17 @@ def measured(kind, value, name, path, size, arguments, threads=None):
     return row
 
 
+def side_by_side(count, name, path, arguments):
+    """The mean time of `count` runs of one thread each, at the same time."""
+    with concurrent.futures.ThreadPoolExecutor(count) as pool:
+        runs = [pool.submit(measured, "threads", 1, name, path, arguments.size, arguments, 1)
+                for _ in range(count)]
+        return sum(run.result()["seconds"] for run in runs) / count
+
+
 def main():
-    parser = argparse.ArgumentParser(prog="tests/benchmarks/run growth", description=__doc__)
+    parser = argparse.ArgumentParser(prog="tests/benchmarks/run growth", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--elements", default="10,100,1000,10000,100000")
     parser.add_argument("--megapixels", default="0.1,0.5,2,8")
     parser.add_argument("--threads-list", default=None, help="1, 2, 4 ... all cores by default")
@@ -69,9 +82,13 @@ def main():
     cores = os.cpu_count()
     counts = (arguments.threads_list.split(",") if arguments.threads_list is not None else
               sorted({1, cores, *(2 ** n for n in range(8) if 2 ** n < cores)}))
-    for threads in counts:
-        rows.append(measured("threads", int(threads), arguments.scene, path, arguments.size,
-                             arguments, int(threads)))
+    for threads in map(int, counts):
+        row = measured("threads", threads, arguments.scene, path, arguments.size, arguments,
+                       threads)
+        row["side_by_side"] = side_by_side(threads, arguments.scene, path, arguments)
+        row["efficiency"] = row["side_by_side"] / (threads * row["seconds"])
+        host.say(f"threads {threads}: {row['efficiency']:.3f} of what independent runs reach")
+        rows.append(row)
     facts = host.facts()
     keys = list(dict.fromkeys(key for row in rows for key in row))
     host.write_csv(arguments.output / "growth.csv",
