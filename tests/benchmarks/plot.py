@@ -10,6 +10,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 
 matplotlib.rcParams.update({
     "svg.hashsalt": "ivory", "font.size": 9, "axes.grid": True, "grid.color": "#dddddd",
@@ -92,6 +93,9 @@ def draw_curves(axis, rows, error, label_y):
             y = [value / number(run, "pixels") for value, run in zip(y, runs)]
         axis.plot(x, y, color=color, marker=marker, markersize=4, linewidth=width, label=method)
     axis.set_xscale("log")
+    axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(ticker.FuncFormatter(lambda x, _: f"{x:,.0f}"))
+    axis.xaxis.set_minor_formatter(ticker.NullFormatter())
     if error == "wrong":
         axis.set_yscale("symlog", linthresh=1e-6)
         axis.set_ylim(bottom=0)
