@@ -46,13 +46,13 @@ def number(row, key):
 TIME = "seconds"  # the column that is drawn
 
 
-def nanoseconds(row):
+def microseconds(row):
     """A pixel; of all processors together where processor time is drawn."""
-    return number(row, TIME) / number(row, "pixels") * 1e9
+    return number(row, TIME) / number(row, "pixels") * 1e6
 
 
 def time_label():
-    return "nanoseconds a pixel" if TIME == "seconds" else "processor nanoseconds a pixel"
+    return "microseconds a pixel" if TIME == "seconds" else "processor microseconds a pixel"
 
 
 def save(figure, folder, name):
@@ -85,7 +85,7 @@ def draw_curves(axis, rows, error, label_y):
         color, marker, width = LOOK[method]
         runs = [run for run in runs if number(run, error) > 0 or error == "wrong"]
         runs.sort(key=lambda run: -number(run, "tolerance"))
-        x = [nanoseconds(run) for run in runs]
+        x = [microseconds(run) for run in runs]
         y = [number(run, error) for run in runs]
         if error.startswith("t_"):
             y = [value / number(run, "least_width") for value, run in zip(y, runs)]
@@ -94,7 +94,7 @@ def draw_curves(axis, rows, error, label_y):
         axis.plot(x, y, color=color, marker=marker, markersize=4, linewidth=width, label=method)
     axis.set_xscale("log")
     axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-    axis.xaxis.set_major_formatter(ticker.FuncFormatter(lambda x, _: f"{x:,.0f}"))
+    axis.xaxis.set_major_formatter(ticker.FuncFormatter(lambda x, _: f"{x:g}"))
     axis.xaxis.set_minor_formatter(ticker.NullFormatter())
     if error == "wrong":
         axis.set_yscale("symlog", linthresh=1e-6)
@@ -107,7 +107,7 @@ def draw_curves(axis, rows, error, label_y):
 def look_line(axis, rows):
     for row in rows:
         if row["method"] == "one look":
-            axis.axvline(nanoseconds(row), color="#999999", linestyle=":", linewidth=1)
+            axis.axvline(microseconds(row), color="#999999", linestyle=":", linewidth=1)
 
 
 def pareto(folder, table, peers):
