@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 constexpr double frame_seconds = 1.0 / 60;  // of the script's own time, whatever a frame takes
-constexpr double longest_wait = 60;         // seconds for a final picture
+constexpr int longest_wait = 60 * IVORY_PATIENCE;  // seconds for a final picture
 // A person waits for the surface to follow before moving on; no longer than that for a heavy scene.
 constexpr double patience = 2;  // seconds
 constexpr int frames_to_settle = 3;
@@ -162,8 +162,8 @@ void ScriptPlayer::wait_final() {
         const PictureState& picture = viewer_.state().picture;
         if (!picture.fault.empty()) throw Error("there is no picture: " + picture.fault);
         if (seconds_since(start) > longest_wait)
-            throw Error("the picture is not final after 60 seconds: " +
-                        std::to_string(static_cast<int>(100 * picture.progress)) +
+            throw Error("the picture is not final after " + std::to_string(longest_wait) +
+                        " seconds: " + std::to_string(static_cast<int>(100 * picture.progress)) +
                         " % of it is traced");
         if (!viewer_.final()) wake_up_.wait(0.05);
     }
