@@ -1,5 +1,9 @@
 #include "app/viewer/render_session.h"
 
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <condition_variable>
@@ -32,16 +36,24 @@ using std::chrono::milliseconds;
 
 // Between the frames that show refinement: more would only take time from the tracer.
 constexpr milliseconds refinement_interval{40};
-// A first picture is shown this long after the edit at the earliest, if more is coming.
-constexpr milliseconds hold_back{12};
-// How long an edit leaves the picture before it to become complete: normally, and when the one
-// before that was cut short too, so that someone who drags without a pause sees the surface follow.
+// Blocks of so many pixels are fine enough to be worked with.
+constexpr int fine_blocks = 8;
+// A first picture of fine blocks is shown this long after the edit at the earliest, if more is
+// coming, and one of coarser blocks.
+constexpr milliseconds hold_back{12}, hold_back_coarse{20};
+// How long an edit leaves the picture before it to become fine, or to become complete at all when
+// the one before that was cut short too: someone who drags without a pause sees the surface follow.
 constexpr milliseconds grace{15}, grace_when_starved{100};
-// A first pass that takes longer is followed by coarser ones; one that takes less by finer ones,
-// since a pass of half the stride takes about four times as long.
-constexpr milliseconds first_pass_long{40}, first_pass_short{4};
 // After the last edit, before tiles are traced again that nobody can tell from what they are.
 constexpr milliseconds rest{150};
+
+// This thread and those that it starts get a processor after the one that draws the window.
+void yield_to_other_threads() {
+#ifdef __linux__
+    // on Linux a thread has a priority of its own; without the right to it all goes on as it is
+    static_cast<void>(setpriority(PRIO_PROCESS, 0, 5));
+#endif
+}
 
 double milliseconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
@@ -61,30 +73,32 @@ bool same_geometry(const Scene& a, const Scene& b) {
 
 // A picture in the making, or made: what the workers have delivered of it.
 struct Board {
+    static constexpr std::uint8_t nothing = 255;  // coarser than all blocks
+
     std::uint64_t number = 0;  // of its request; 0: none yet
     PictureRequest request;
     WindowSize laid_out;  // what all that follows is of
     std::vector<Rgba8> color;
     std::vector<float> depth;
-    std::vector<std::uint8_t> shows;       // by tile: something of this picture is there
+    std::vector<std::uint8_t> blocks;      // by tile: of how many pixels a side it is made
     std::vector<std::uint16_t> done;       // by tile: its pixels that are this picture's
     std::vector<std::size_t> changed;      // tiles since the last poll, each once
     std::vector<std::uint8_t> is_changed;  // by tile
     std::vector<std::array<std::uint16_t, 5>> tile_pixels;
     std::array<std::uint64_t, 5> pixels{};  // by Status, of all tiles
-    std::size_t tiles_missing = 0;          // those that show nothing
+    std::size_t tiles_missing = 0, tiles_coarse = 0;  // those that show nothing; no fine blocks
     std::uint64_t pixels_done = 0;
     std::uint64_t tiles_traced = 0;
     bool tracing = false;  // false: only shaded anew
     bool certainly_empty = false;
     bool final = false;
-    Clock::time_point first_complete;  // when the last tile came that showed nothing
     Clock::time_point ended;  // when the last tile came that anyone can tell from the one before
     std::string fault;
 
     [[nodiscard]] bool complete() const {
         return number != 0 && tiles_missing == 0 && fault.empty();
     }
+    [[nodiscard]] bool fine() const { return complete() && tiles_coarse == 0; }
 
     // Another picture. It has nothing yet of the tiles in `missing`; the others stand as they are.
     void begin(std::uint64_t new_number, const PictureRequest& new_request,
@@ -104,13 +118,14 @@ struct Board {
             pixels = {};
             laid_out = request.size;
         }
-        shows.assign(missing.size(), 1);
+        blocks.assign(missing.size(), 1);
         tiles_missing = 0;
         for (std::size_t tile = 0; tile < missing.size(); ++tile) {
             if (missing[tile] == 0) continue;
-            shows[tile] = 0;
+            blocks[tile] = nothing;
             ++tiles_missing;
         }
+        tiles_coarse = tiles_missing;
         tiles_traced = 0;
         certainly_empty = surface_empty;
         final = false;
@@ -128,24 +143,18 @@ struct Board {
         }
     }
 
-    // The tile's pixels from the frame, those that are not traced yet as blocks of the nearest one
-    // above and to the left that is. How many more of them are there now.
-    std::uint64_t take(const TileNotice& notice, const Frame& frame, const TileState& tile) {
+    // Pixels from the frame, those that are not traced yet as blocks of the nearest one above and
+    // to the left that is. How many more of the tile are there now.
+    std::uint64_t take(const TileNotice& notice, const Canvas& canvas) {
+        const Frame& frame = canvas.frame;
+        const TileState& tile = canvas.tiles[notice.tile];
         const PixelRect& rect = notice.rect;
-        for (int j = rect.y0; j < rect.y1; ++j) {
-            for (int i = rect.x0; i < rect.x1; ++i) {
-                const std::size_t to = frame.at(i, j);
-                const std::size_t from = frame.at(i - i % notice.stride, j - j % notice.stride);
-                color[to] = frame.color[from];
-                depth[to] = possibly_hit(frame.status[from])
-                                ? static_cast<float>(midpoint(frame.t(from)))
-                                : std::numeric_limits<float>::infinity();
-            }
-        }
-        if (shows[notice.tile] == 0) {
-            shows[notice.tile] = 1;
-            --tiles_missing;
-        }
+        for (int j = rect.y0; j < rect.y1; ++j)
+            for (int i = rect.x0; i < rect.x1; ++i)
+                copy(frame, frame.at(i - i % notice.stride, j - j % notice.stride), frame.at(i, j));
+        const bool stands_for_others = notice.square > TileGrid::tile_side;
+        shows(notice.tile, stands_for_others ? notice.square : notice.stride);
+        if (stands_for_others) spread(notice, canvas);
         if (tracing && done[notice.tile] == 0) ++tiles_traced;
         int sum = 0;
         for (std::size_t status = 0; status < pixels.size(); ++status) {
@@ -157,12 +166,51 @@ struct Board {
         const auto more = static_cast<std::uint64_t>(sum - done[notice.tile]);
         done[notice.tile] = static_cast<std::uint16_t>(sum);
         pixels_done += more;
-        if (is_changed[notice.tile] == 0) {
-            is_changed[notice.tile] = 1;
-            changed.push_back(notice.tile);
-        }
         return more;
     }
+
+  private:
+    void copy(const Frame& frame, std::size_t from, std::size_t to) {
+        color[to] = frame.color[from];
+        depth[to] = possibly_hit(frame.status[from]) ? static_cast<float>(midpoint(frame.t(from)))
+                                                     : std::numeric_limits<float>::infinity();
+    }
+
+    void shows(std::size_t tile, int pixels_a_side) {
+        std::uint8_t& before = blocks[tile];
+        if (before == nothing) --tiles_missing;
+        if (before > fine_blocks && pixels_a_side <= fine_blocks) --tiles_coarse;
+        before = static_cast<std::uint8_t>(pixels_a_side);
+        if (is_changed[tile] != 0) return;
+        is_changed[tile] = 1;
+        changed.push_back(tile);
+    }
+
+    // The first pixel of the tile over the others of its square that have nothing finer.
+    void spread(const TileNotice& notice, const Canvas& canvas) {
+        const Squares& tiles = canvas.grid.tiles;
+        const std::size_t from = canvas.frame.at(notice.rect.x0, notice.rect.y0);
+        const int x0 = notice.rect.x0 - notice.rect.x0 % notice.square;
+        const int y0 = notice.rect.y0 - notice.rect.y0 % notice.square;
+        const PixelRect square{x0, y0, std::min(x0 + notice.square, canvas.frame.width),
+                               std::min(y0 + notice.square, canvas.frame.height)};
+        for_squares_in(tiles, square, [&](std::size_t tile) {
+            if (blocks[tile] <= notice.square) return;
+            const PixelRect rect = tiles.rect(tile);
+            for (int j = rect.y0; j < rect.y1; ++j)
+                for (int i = rect.x0; i < rect.x1; ++i)
+                    copy(canvas.frame, from, canvas.frame.at(i, j));
+            shows(tile, notice.square);
+        });
+    }
+};
+
+// A complete picture that the next one overtook before anyone had looked.
+struct Overtaken {
+    std::uint64_t number;
+    PictureRequest request;
+    std::vector<Rgba8> color;
+    std::vector<float> depth;
 };
 
 // Copies the tile; whether that changed a byte of its colours.
@@ -204,16 +252,14 @@ class RenderSession::Director {
         wanted_ = std::move(request);
         ++wanted_number_;
         if (job_ != nullptr) {
-            if (board_.complete()) {
-                job_->cancel();
-            } else if (!cancel_at_) {
-                cancel_at_ = Clock::now() + (starved_ ? grace_when_starved : grace);
-            }
+            if (!superseded_) superseded_ = Clock::now();
+            if (enough()) job_->cancel();
         }
         condition_.notify_all();
     }
 
-    PictureChange poll(bool hurry, ShownPicture& shown, PictureState& state, double& until_due) {
+    PictureChange poll(FirstPicture first, ShownPicture& shown, PictureState& state,
+                       double& until_due) {
         const std::lock_guard lock(mutex_);
         const Clock::time_point now = Clock::now();
         PictureChange change;
@@ -222,15 +268,22 @@ class RenderSession::Director {
             if (board_.number == shown_number_) {
                 take_changed_tiles(shown, change);
             } else {
-                const Clock::time_point due = board_.request.since + hold_back;
-                if (hurry || board_.final || shown_number_ == 0 || now >= due) {
+                const Clock::time_point due = when_due(first);
+                if (now >= due) {
                     replace(shown, change);
-                    state.first_milliseconds = milliseconds_between(board_.request.since, now);
+                    now_shown(board_.number, board_.request, state, now);
                 } else {
                     until_due = milliseconds_between(now, due) / 1000;
                 }
             }
         }
+        if (overtaken_ && overtaken_->number > shown_number_) {
+            shown = {overtaken_->request.size, std::move(overtaken_->color),
+                     std::move(overtaken_->depth)};
+            change.all = change.replaced = true;
+            now_shown(overtaken_->number, overtaken_->request, state, now);
+        }
+        overtaken_.reset();
         report(shown, state, now);
         return change;
     }
@@ -246,7 +299,23 @@ class RenderSession::Director {
     }
 
   private:
+    // Under the lock: nothing more is to be done for the picture in work, since there is another
+    // to be made.
+    bool enough() const {
+        if (!superseded_) return false;
+        const Clock::duration waited = Clock::now() - *superseded_;
+        return board_.fine() || waited >= grace_when_starved ||
+               (waited >= grace && (board_.complete() || !starved_));
+    }
+
     // --- poll, under the lock ---
+
+    // The board's picture is complete and not shown yet.
+    Clock::time_point when_due(FirstPicture first) const {
+        const bool at_once = first == FirstPicture::any || board_.final || shown_number_ == 0;
+        if (at_once || (first == FirstPicture::fine && board_.fine())) return board_.request.since;
+        return board_.request.since + (board_.fine() ? hold_back : hold_back_coarse);
+    }
 
     void take_changed_tiles(ShownPicture& shown, PictureChange& change) {
         const Squares& tiles = TileGrid(shown.size.width, shown.size.height).tiles;
@@ -270,9 +339,14 @@ class RenderSession::Director {
             take_changed_tiles(shown, change);
         }
         change.replaced = true;
-        shown_number_ = board_.number;
-        shown_scene_ = board_.request.scene;
-        shown_camera_ = board_.request.camera;
+    }
+
+    void now_shown(std::uint64_t number, const PictureRequest& request, PictureState& state,
+                   Clock::time_point now) {
+        state.first_milliseconds = milliseconds_between(request.since, now);
+        shown_number_ = number;
+        shown_scene_ = request.scene;
+        shown_camera_ = request.camera;
     }
 
     void report(const ShownPicture& shown, PictureState& state, Clock::time_point now) const {
@@ -297,7 +371,7 @@ class RenderSession::Director {
         state.hit = count(Status::hit);
         state.miss = count(Status::miss);
         state.unresolved = count(Status::unresolved);
-        state.tiles = board_.shows.size();
+        state.tiles = board_.blocks.size();
         state.tiles_traced = current ? board_.tiles_traced : 0;
         state.surface_certainly_empty = current && board_.certainly_empty;
         state.fault = current ? board_.fault : "";
@@ -306,6 +380,7 @@ class RenderSession::Director {
     // --- the director's thread ---
 
     void direct() {
+        yield_to_other_threads();  // and so do the workers, which are its children
         std::unique_lock lock(mutex_);
         while (true) {
             condition_.wait(lock, [this] { return stop_ || wanted_; });
@@ -313,7 +388,7 @@ class RenderSession::Director {
             in_work_ = *std::exchange(wanted_, std::nullopt);
             const PictureRequest request = in_work_;
             const std::uint64_t number = wanted_number_;
-            cancel_at_.reset();
+            superseded_.reset();
             lock.unlock();
             std::string fault;
             try {
@@ -348,18 +423,17 @@ class RenderSession::Director {
         }
         {
             const std::lock_guard lock(mutex_);
+            if (board_.complete() && board_.number > shown_number_)
+                overtaken_ = {board_.number, board_.request, board_.color, board_.depth};
             board_.begin(number, request, selected, picture_.field->box.empty());
             board_.expect(selected, kept, task != Task::shade);
             ++totals_.begun;
         }
-        const Clock::time_point start = Clock::now();
         bool going_on = run(task, Order::coarse_to_fine, request, selected);
         {
             const std::lock_guard lock(mutex_);
             starved_ = !board_.complete();
             board_.ended = Clock::now();
-            if (board_.tiles_traced > 0)
-                choose_first_stride((starved_ ? board_.ended : board_.first_complete) - start);
         }
         if (task != Task::shade) settle(selected);
         if (going_on && std::find(kept.begin(), kept.end(), 1) != kept.end()) {
@@ -379,14 +453,6 @@ class RenderSession::Director {
         if (going_on) settings_.wake();
     }
 
-    // For the next picture, by how long this one's first pass took.
-    void choose_first_stride(Clock::duration first_pass) {
-        if (first_pass > first_pass_long)
-            first_stride_ = std::min(2 * first_stride_, 16);
-        else if (first_pass < first_pass_short && !starved_)
-            first_stride_ = std::max(first_stride_ / 2, 2);
-    }
-
     // False: cancelled.
     bool run(Task task, Order order, const PictureRequest& request,
              std::vector<std::uint8_t> selected) {
@@ -395,7 +461,6 @@ class RenderSession::Director {
         job.threads = settings_.threads;
         job.task = task;
         job.order = order;
-        job.first_stride = first_stride_;
         job.keep_lists = true;
         job.selected = std::move(selected);
         if (request.focus) {
@@ -408,13 +473,12 @@ class RenderSession::Director {
         std::unique_lock lock(mutex_);
         job_ = &frame_job;
         if (stop_) frame_job.cancel();
-        if (wanted_ && !cancel_at_) cancel_at_ = Clock::now() + grace;  // asked for since then
+        if (wanted_ && !superseded_) superseded_ = Clock::now();  // asked for since then
         lock.unlock();
-        // `show` and `deliver` cancel what is complete; here the grace of the others ends.
+        // `show` and `deliver` cancel what is fine; here the grace of the others ends.
         while (!frame_job.wait_for(milliseconds(5))) {
             lock.lock();
-            if (cancel_at_ && (board_.complete() || Clock::now() >= *cancel_at_))
-                frame_job.cancel();
+            if (enough()) frame_job.cancel();
             lock.unlock();
         }
         lock.lock();
@@ -490,17 +554,16 @@ class RenderSession::Director {
         bool wake = false;
         {
             const std::lock_guard lock(mutex_);
-            const bool was_complete = board_.complete();
+            const bool was_complete = board_.complete(), was_fine = board_.fine();
             const std::uint64_t tiles_before = board_.tiles_traced;
-            const std::uint64_t more =
-                board_.take(notice, canvas_->frame, canvas_->tiles[notice.tile]);
+            const std::uint64_t more = board_.take(notice, *canvas_);
             totals_.tiles_traced += board_.tiles_traced - tiles_before;
             if (board_.tracing) totals_.pixels_traced += more;
             if (!board_.complete()) return;
             const Clock::time_point now = Clock::now();
-            if (!was_complete) board_.first_complete = now;
-            if (!was_complete && cancel_at_ && job_ != nullptr) job_->cancel();
-            wake = !was_complete || now - last_wake_ >= refinement_interval;
+            const bool is_better = !was_complete || (!was_fine && board_.fine());
+            if (is_better && job_ != nullptr && enough()) job_->cancel();
+            wake = is_better || now - last_wake_ >= refinement_interval;
             if (wake) last_wake_ = now;
         }
         if (wake) settings_.wake();
@@ -522,9 +585,10 @@ class RenderSession::Director {
     PictureRequest in_work_;
     std::uint64_t wanted_number_ = 0;
     FrameJob* job_ = nullptr;
-    std::optional<Clock::time_point> cancel_at_;
-    bool starved_ = false;
+    std::optional<Clock::time_point> superseded_;  // when there was first another than that in work
+    bool starved_ = false;  // the one before that was cut short with nothing to show
     Board board_;
+    std::optional<Overtaken> overtaken_;
     SessionTotals totals_;
     Clock::time_point last_wake_;
     std::uint64_t shown_number_ = 0;
@@ -536,7 +600,6 @@ class RenderSession::Director {
     Picture picture_;
     PictureRequest traced_;  // what picture_, canvas_ and tiles_ are of
     std::vector<Tile> tiles_;
-    int first_stride_ = 8;                   // of the next first pass
     std::vector<TileDirection> directions_;  // of picture_.view; empty: not made yet
 
     std::jthread thread_;  // last: joined before what it uses is gone
@@ -549,8 +612,8 @@ RenderSession::~RenderSession() = default;
 
 void RenderSession::show(PictureRequest request) { director_->show(std::move(request)); }
 
-PictureChange RenderSession::poll(bool hurry) {
-    return director_->poll(hurry, shown_, state_, seconds_until_due_);
+PictureChange RenderSession::poll(FirstPicture first) {
+    return director_->poll(first, shown_, state_, seconds_until_due_);
 }
 
 bool RenderSession::first_picture_ready() const { return director_->first_picture_ready(); }

@@ -3,8 +3,7 @@
 //   show(request) -> director: compile, start a job -> workers: tiles -> board -> poll() -> shown()
 //
 // The picture shown is always all of one scene: a new one gathers on the board and replaces the old
-// one when each of its tiles has something to show, as blocks, coarse enough to come in time; then
-// it is refined in place.
+// one as blocks, coarse enough to come in time; then it is refined in place.
 #pragma once
 
 #include <chrono>
@@ -21,6 +20,14 @@
 #include "core/scene/scene.h"
 
 namespace ivory {
+
+// Which first pictures `poll` takes over. Coarse blocks that are about to be refined only flicker,
+// unless that takes long enough to be waited for.
+enum class FirstPicture : std::uint8_t {
+    any,      // whatever is there of the whole picture
+    fine,     // fine blocks at once: the next edit is about to replace them
+    settled,  // and these after a moment, since the final picture may be there before anyone sees it
+};
 
 struct PictureRequest {
     std::shared_ptr<const Scene> scene;  // its own camera is not looked at
@@ -73,9 +80,8 @@ class RenderSession {
     // finished for a bounded time, or a drag over a heavy scene would show nothing.
     void show(PictureRequest request);
 
-    // Takes over what is finished. A coarse picture is held back for a moment, since the final one
-    // may be there before anyone sees it, unless `hurry`: the next edit is about to replace it.
-    PictureChange poll(bool hurry);
+    // Takes over what is finished.
+    PictureChange poll(FirstPicture first);
 
     [[nodiscard]] const ShownPicture& shown() const { return shown_; }
     // As of the last poll. Its `depth` is that of shown().

@@ -102,8 +102,10 @@ struct Viewer::Parts {
 
     // When the edit was made whose first picture has just come, if one has.
     std::optional<Clock::time_point> take_picture(const Input& input) {
-        const PictureChange change = session.poll(
-            !settings.hold_back_coarse || holds_a_button(input) || something_happened(input));
+        const bool hurry = holds_a_button(input) || something_happened(input);
+        const PictureChange change = session.poll(!settings.hold_back_coarse ? FirstPicture::any
+                                                  : hurry                    ? FirstPicture::fine
+                                                                             : FirstPicture::settled);
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();

@@ -20,7 +20,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t pixels_in_tile = TileGrid::tile_side * TileGrid::tile_side;
+constexpr int tile_side = TileGrid::tile_side;
+constexpr std::size_t pixels_in_tile = tile_side * tile_side;
 
 // What a worker adds up for itself, and the report gets at its end.
 struct Tally {
@@ -44,11 +45,7 @@ struct TracedTile {
 
 std::vector<int> strides_of(const JobSettings& settings) {
     const bool coarse = settings.order == Order::coarse_to_fine && settings.task != Task::shade;
-    std::vector<int> strides;
-    for (int stride = coarse ? settings.first_stride : 1; stride > 0; stride /= 2) {
-        strides.push_back(stride);
-    }
-    return strides;
+    return coarse ? std::vector<int>{64, 32, 16, 8, 4, 2, 1} : std::vector<int>{1};
 }
 
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
@@ -75,6 +72,8 @@ class FrameJob::Work {
           all_(all_elements(*picture_.field)),
           region_lists_(canvas.grid.regions.size()),
           region_done_(canvas.grid.regions.size()),
+          block_lists_(canvas.grid.blocks.size()),
+          tile_begun_(canvas.grid.tiles.size()),
           passes_done_(canvas.grid.blocks.size()) {
         plan();
     }
@@ -249,40 +248,56 @@ class FrameJob::Work {
 
     bool take_block(std::size_t block, std::size_t pass, Tally& tally) {
         const PixelRect rect = blocks().rect(block);
-        if (pass == 0 && !hand_down_lists(rect, tally)) return false;
+        if (pass == 0 && !list_block(block, tally)) return false;
+        // Of a square larger than a tile the first tile alone, unless all are done at once.
+        const bool sparse = strides_[pass] > tile_side && !block_lists_[block].certainly_empty;
+        const int square = sparse ? strides_[pass] : tile_side;
+        std::uint32_t begun = 0;  // squares, one bit each
         bool done = true;
         for_squares_in(tiles(), rect, [&](std::size_t tile) {
-            done = done && (!selected(tile) || take_tile(tile, pass, tally));
+            if (!done || !selected(tile)) return;
+            const PixelRect corner = tiles().rect(tile);
+            const int column = (corner.x0 - rect.x0) / square;
+            const int row = (corner.y0 - rect.y0) / square;
+            const std::uint32_t bit = 1u << (row * (TileGrid::block_side / square) + column);
+            if (sparse && (begun & bit) != 0) return;
+            begun |= bit;
+            done = take_tile(tile, block, pass, square, tally);
         });
+        if (strides_[pass] <= tile_side) block_lists_[block] = {};  // each tile has its own
         return done;
     }
 
-    bool hand_down_lists(const PixelRect& rect, Tally& tally) {
-        std::array<std::size_t, 16> missing{};
-        std::size_t count = 0;
+    // The block's list, where one of its tiles will need it.
+    bool list_block(std::size_t block, Tally& tally) {
+        const PixelRect rect = blocks().rect(block);
+        bool needed = false;
         for_squares_in(tiles(), rect, [&](std::size_t tile) {
-            if (selected(tile) && !canvas_.tiles[tile].has_list) missing[count++] = tile;
+            needed = needed || (selected(tile) && !canvas_.tiles[tile].has_list);
         });
-        if (count == 0) return true;
-        const std::size_t region = regions().at(rect.x0, rect.y0);
+        if (!needed) return true;
+        const std::size_t region = region_of(block);
         if (!wait_until(region_done_[region], 1)) return false;
-
         const Clock::time_point start = Clock::now();
-        const ElementList list = narrowed(region_lists_[region], rect);
-        for (std::size_t m = 0; m < count; ++m) {
-            TileState& tile = canvas_.tiles[missing[m]];
-            tile.list = narrowed(list, tiles().rect(missing[m]));
-            tile.has_list = true;
-        }
+        block_lists_[block] = narrowed(region_lists_[region], rect);
         tally.tracing += Clock::now() - start;
         return true;
     }
 
-    bool take_tile(std::size_t index, std::size_t pass, Tally& tally) {
+    bool take_tile(std::size_t index, std::size_t block, std::size_t pass, int square,
+                   Tally& tally) {
         TileState& tile = canvas_.tiles[index];
-        const bool first = pass == 0;
+        const bool first = tile_begun_[index] == 0;
         const bool last = pass + 1 == strides_.size();
+        if (!first && strides_[pass] >= tile_side) return true;  // it has its one pixel
+        tile_begun_[index] = 1;
         if (first) {
+            if (!tile.has_list) {
+                const Clock::time_point start = Clock::now();
+                tile.list = narrowed(block_lists_[block], tiles().rect(index));
+                tile.has_list = true;
+                tally.tracing += Clock::now() - start;
+            }
             ++tally.tiles;
             if (!tile.list.certainly_empty) {
                 for (const std::uint32_t element : tile.list.elements) tally.reached[element] = 1;
@@ -292,10 +307,12 @@ class FrameJob::Work {
         if (settings_.task == Task::shade) {
             done = shade_again(index, tally);
         } else if (!tile.list.certainly_empty) {
-            done = trace_tile(index, pass, tally);
+            done = trace_tile(index, strides_[pass], first, tally);
         } else if (first) {
             leave_empty(index);
         }
+        const bool has_new = first || !tile.list.certainly_empty;
+        if (done && has_new) notify(index, square);
         if (done && last && !settings_.keep_lists) {
             tile.has_list = false;
             tile.list = {};
@@ -303,9 +320,9 @@ class FrameJob::Work {
         return done;
     }
 
-    void notify(std::size_t tile) const {
+    void notify(std::size_t tile, int square) const {
         if (settings_.on_tile) {
-            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride});
+            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride, square});
         }
     }
 
@@ -328,14 +345,13 @@ class FrameJob::Work {
             static_cast<std::uint16_t>(rect.area());
         tile.enclosure_width_max = 0;
         tile.unresolved_width_max = 0;
-        notify(index);
     }
 
-    bool trace_tile(std::size_t index, std::size_t pass, Tally& tally) {
+    bool trace_tile(std::size_t index, int stride, bool first, Tally& tally) {
         const TileState& tile = canvas_.tiles[index];
         const Clock::time_point start = Clock::now();
         TracedTile traced;
-        gather(traced, index, strides_[pass], pass > 0 ? strides_[pass - 1] : 0);
+        gather(traced, index, stride, first ? 0 : tile.stride);
         const std::span<Isolation> isolations(traced.isolations.data(), traced.size());
         const std::span<SurfacePoint> surfaces(traced.surfaces.data(),
                                                wants_surface() ? traced.size() : 0);
@@ -360,9 +376,8 @@ class FrameJob::Work {
         const Clock::time_point between = Clock::now();
         tally.tracing += between - start;
         paint(traced);
-        commit(index, pass, traced);
+        commit(index, stride, first, traced);
         tally.shading += Clock::now() - between;
-        notify(index);
         return true;
     }
 
@@ -427,10 +442,10 @@ class FrameJob::Work {
         }
     }
 
-    void commit(std::size_t index, std::size_t pass, const TracedTile& traced) {
+    void commit(std::size_t index, int stride, bool first, const TracedTile& traced) {
         Frame& frame = canvas_.frame;
         TileState& tile = canvas_.tiles[index];
-        if (pass == 0) {
+        if (first) {
             tile.empty = false;
             tile.pixels = {};
             tile.enclosure_width_max = 0;
@@ -451,7 +466,7 @@ class FrameJob::Work {
                                                                     : tile.enclosure_width_max;
             widest = std::max(widest, width(isolation.t));
         }
-        tile.stride = strides_[pass];
+        tile.stride = std::min(stride, tile_side);
     }
 
     // Colours, lights and background anew, from the t that stand in the frame.
@@ -480,7 +495,6 @@ class FrameJob::Work {
             }
         }
         tally.shading += Clock::now() - start;
-        notify(index);
         return true;
     }
 
@@ -495,6 +509,8 @@ class FrameJob::Work {
     std::atomic<std::size_t> next_{0};
     std::vector<ElementList> region_lists_;
     std::vector<std::atomic<int>> region_done_;
+    std::vector<ElementList> block_lists_;  // while tiles of the block have none yet
+    std::vector<std::uint8_t> tile_begun_;  // by this job; whoever is at the tile's block uses it
     std::vector<std::atomic<int>> passes_done_;  // by block
 
     std::stop_source stop_;

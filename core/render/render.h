@@ -22,7 +22,8 @@ enum class Task : std::uint8_t {
 
 enum class Order : std::uint8_t {
     plain,           // each tile once, all of its pixels
-    coarse_to_fine,  // all tiles with every n-th pixel, then n/2-th, ... all; none traced twice
+    // One pixel for each 64 x 64, then 32 x 32 and so on to the last: none is traced twice.
+    coarse_to_fine,
 };
 
 // Pixels whose column and row are multiples of `stride` are in the frame now. Those between that
@@ -30,14 +31,16 @@ enum class Order : std::uint8_t {
 struct TileNotice {
     std::size_t tile;
     PixelRect rect;
-    int stride;  // a power of two, 16 at the most
+    int stride;  // 16, 8, 4, 2 or 1
+    // Coarse to fine, 64 or 32 while this is the only selected tile begun of the square of so many
+    // pixels a side, counted from the picture's corner: until others come it stands for them all.
+    int square;
 };
 
 struct JobSettings {
     int threads = 1;  // 1 or more
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
-    int first_stride = 8;     // of coarse to fine: the first pass's, 16, 8, 4, 2 or 1
     bool keep_lists = false;  // in the canvas, for the next job
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;

@@ -98,4 +98,38 @@ Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed) {
     return scene;
 }
 
+Scene mixed_scene(std::size_t elements, std::uint64_t seed) {
+    Random random(seed);
+    const auto in_ball = [&] {
+        while (true) {
+            const Vec3d p = random.in_cube(1);
+            if (dot(p, p) <= 1 && dot(p, p) > 0) return p;
+        }
+    };
+    Scene scene;
+    scene.threshold = 0.5;
+    scene.camera = Camera{{0, 0, 3.9}, {0, 0, 0}};
+    while (scene.elements.size() < elements) {
+        Element element;
+        const Vec3d center = in_ball(), along = in_ball();
+        const double size = random.uniform(0.15, 0.3);
+        switch (scene.elements.size() % 3) {
+            case 0:
+                element.skeleton = PointSkeleton{center};
+                break;
+            case 1: {
+                const Vec3d half = (size / std::sqrt(dot(along, along))) * along;
+                element.skeleton = SegmentSkeleton{center - half, center + half};
+                break;
+            }
+            default:
+                element.skeleton = CircleSkeleton{center, along, size};
+        }
+        element.width = random.uniform(0.1, 0.2);
+        element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+        scene.elements.push_back(element);
+    }
+    return scene;
+}
+
 }  // namespace ivory::tools

@@ -41,4 +41,8 @@ struct SceneRecipe {
 // alone rounds nothing.
 [[nodiscard]] Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed);
 
+// Points, segments and circles by turns in the unit ball, small and narrow: what a person may have
+// made of many elements, seen from near by.
+[[nodiscard]] Scene mixed_scene(std::size_t elements, std::uint64_t seed);
+
 }  // namespace ivory::tools

@@ -90,7 +90,7 @@ class Session : public testing::Test {
     }
     bool wait_final() {
         return wait_until([this] {
-            session.poll(false);
+            session.poll(FirstPicture::settled);
             return session.state().final;
         });
     }
@@ -100,7 +100,7 @@ class Session : public testing::Test {
 };
 
 TEST_F(Session, WithoutARequestThereIsNoPicture) {
-    EXPECT_FALSE(session.poll(true).any());
+    EXPECT_FALSE(session.poll(FirstPicture::any).any());
     EXPECT_EQ(session.state().scene, nullptr);
     EXPECT_FALSE(session.state().final);
 }
@@ -141,7 +141,7 @@ TEST_F(Session, AnEditChangesOnlyWhatItSaysItChanged) {
     std::vector<Rgba8> mirror = session.shown().color;
     show(with_left_blob_at(-1.0));
     ASSERT_TRUE(wait_until([&] {
-        const PictureChange change = session.poll(false);
+        const PictureChange change = session.poll(FirstPicture::settled);
         EXPECT_FALSE(change.all);
         for (const PixelRect& rect : change.tiles)
             for (int j = rect.y0; j < rect.y1; ++j)
@@ -156,7 +156,7 @@ TEST_F(Session, AnEditChangesOnlyWhatItSaysItChanged) {
 }
 
 // Whenever one looks, each pixel is the one of the scene that is said to be shown, or that of the
-// nearest pixel of a coarser grid: never another scene's, never black.
+// nearest pixels of a coarser grid: never another scene's, never black.
 TEST_F(Session, NoPictureIsAMixtureOfScenes) {
     constexpr unsigned seed = 7;
     std::mt19937 random(seed);
@@ -178,10 +178,16 @@ TEST_F(Session, NoPictureIsAMixtureOfScenes) {
             for (int i = 0; i < size.width; ++i) {
                 const Rgba8 is =
                     session.shown().color[static_cast<std::size_t>(j * size.width + i)];
+                const auto is_pixel = [&](int x, int y) {
+                    return near(is, final[static_cast<std::size_t>(y * size.width + x)]);
+                };
                 bool known = false;
                 for (const int stride : {1, 2, 4, 8, 16})
-                    known = known || near(is, final[static_cast<std::size_t>(
-                                                  (j - j % stride) * size.width + i - i % stride)]);
+                    known = known || is_pixel(i - i % stride, j - j % stride);
+                // before a tile has a pixel of its own, another near by stands for it
+                for (int y = j - j % 64; y < std::min(j - j % 64 + 64, size.height); y += 16)
+                    for (int x = i - i % 64; x < std::min(i - i % 64 + 64, size.width); x += 16)
+                        known = known || is_pixel(x, y);
                 ASSERT_TRUE(known) << "seed " << seed << ", pixel " << i << ", " << j;
             }
     };
@@ -189,7 +195,7 @@ TEST_F(Session, NoPictureIsAMixtureOfScenes) {
         show(scenes[random() % scenes.size()]);
         for (int look = 0; look < 3; ++look) {
             std::this_thread::sleep_for(std::chrono::milliseconds(pause(random)));
-            session.poll(look % 2 == 0);
+            session.poll(static_cast<FirstPicture>(look));
             check();
             if (HasFatalFailure()) return;
         }
@@ -206,12 +212,29 @@ TEST_F(Session, TheOldPictureStaysUntilTheNewOneIsComplete) {
     const std::vector<Rgba8> before = session.shown().color;
     show(second);
     while (!session.first_picture_ready()) {
-        session.poll(true);
+        session.poll(FirstPicture::any);
         if (session.state().scene != first) break;
         ASSERT_EQ(session.shown().color, before);
     }
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.state().scene, second);
+}
+
+TEST_F(Session, ACompletePictureIsShownThoughTheNextHasBegun) {
+    const SceneValue first = with_left_blob_at(-1.2);
+    show(first);
+    ASSERT_TRUE(wait_final());
+    for (int i = 1; i <= 20; ++i) {
+        const SceneValue overtaken = with_left_blob_at(-1.2 + 0.05 * i);
+        const SceneValue next = with_left_blob_at(1.2 - 0.05 * i);
+        show(overtaken);
+        ASSERT_TRUE(wait_first());
+        show(next);
+        std::this_thread::sleep_for(std::chrono::milliseconds(i));
+        EXPECT_TRUE(session.poll(FirstPicture::any).replaced);
+        const SceneValue shown = session.state().scene;
+        EXPECT_TRUE(shown == overtaken || shown == next);
+    }
 }
 
 TEST_F(Session, AnEditCancelsRefinement) {
@@ -278,7 +301,7 @@ TEST_F(Session, ADragEndsExactlyWhereverItWent) {
         show(with_left_blob_at(-1.2 + 0.1 * i));
         if (i % 5 != 0) continue;
         ASSERT_TRUE(wait_first());
-        session.poll(true);
+        session.poll(FirstPicture::any);
     }
     show(with_left_blob_at(-1.2));
     ASSERT_TRUE(wait_final());
@@ -293,7 +316,7 @@ TEST_F(Session, AnotherSizeReplacesThePictureAsAWhole) {
         show(scene, camera(), other);
         bool replaced = false;
         ASSERT_TRUE(wait_until([&] {
-            const PictureChange change = session.poll(false);
+            const PictureChange change = session.poll(FirstPicture::settled);
             replaced = replaced || change.all;
             return session.state().final;
         }));
@@ -321,7 +344,7 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     broken.target = broken.position;
     show(scene, broken);
     ASSERT_TRUE(wait_until([&] {
-        session.poll(false);
+        session.poll(FirstPicture::settled);
         return !session.state().fault.empty();
     }));
     EXPECT_EQ(session.shown().color, rendered(*scene, camera()));  // the old picture
@@ -329,7 +352,7 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     EXPECT_FALSE(session.state().final);
     show(scene, broken, {50, 300});
     ASSERT_TRUE(wait_first());
-    EXPECT_FALSE(session.poll(true).any());
+    EXPECT_FALSE(session.poll(FirstPicture::any).any());
     show(scene, camera(), {50, 300});
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.shown().color, rendered(*scene, camera(), {50, 300}));
@@ -344,7 +367,7 @@ TEST(RenderSessionLife, EndsWhileItWorks) {
         RenderSession session({2, tolerance, [] {}});
         session.show({with_left_blob_at(-1.2), camera(), {600, 400}, std::nullopt, Clock::now()});
         std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
-        session.poll(true);
+        session.poll(FirstPicture::any);
     }
 }
 

@@ -215,32 +215,70 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
     Canvas expected(frame_width, frame_height, false);
     render(picture, expected, {});
 
-    for (const int first_stride : {1, 4, 8, 16}) {
-        Canvas canvas(frame_width, frame_height, false);
-        std::vector<std::atomic<int>> stride(canvas.tiles.size());
-        std::vector<std::atomic<int>> inside(canvas.tiles.size());
-        std::atomic<int> wrong{0};
+    Canvas canvas(frame_width, frame_height, false);
+    std::vector<std::atomic<int>> stride(canvas.tiles.size());
+    std::vector<std::atomic<int>> inside(canvas.tiles.size());
+    std::atomic<int> wrong{0};
+    JobSettings settings;
+    settings.order = Order::coarse_to_fine;
+    settings.threads = 3;
+    settings.on_tile = [&](const TileNotice& notice) {
+        if (inside[notice.tile]++ != 0) ++wrong;
+        const int before = stride[notice.tile].exchange(notice.stride);
+        if (notice.stride != 1 && notice.stride != (before == 0 ? 16 : before / 2)) ++wrong;
+        if (notice.square != 16 && before != 0) ++wrong;
+        if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
+        for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
+            for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
+                const std::size_t p = canvas.frame.at(i, j);
+                if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
+            }
+        }
+        --inside[notice.tile];
+    };
+    render(picture, canvas, settings);
+    EXPECT_EQ(wrong, 0);
+    for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
+}
+
+// One tile for each 64 x 64 pixels, then one for each 32 x 32 that has none, then the others: of
+// those that are selected.
+TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
+    for (const bool some : {false, true}) {
+        Canvas canvas(200, 140, false);
+        std::vector<std::size_t> begun;
+        std::vector<int> squares;
         JobSettings settings;
         settings.order = Order::coarse_to_fine;
-        settings.first_stride = first_stride;
-        settings.threads = 3;
+        if (some) {
+            settings.selected.resize(canvas.tiles.size());
+            for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
+                settings.selected[t] = (t * 7) % 5 < 2;
+        }
         settings.on_tile = [&](const TileNotice& notice) {
-            if (inside[notice.tile]++ != 0) ++wrong;
-            const int before = stride[notice.tile].exchange(notice.stride);
-            if (notice.stride != 1 && notice.stride != (before == 0 ? first_stride : before / 2))
-                ++wrong;
-            if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
-            for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
-                for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
-                    const std::size_t p = canvas.frame.at(i, j);
-                    if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
-                }
-            }
-            --inside[notice.tile];
+            if (std::count(begun.begin(), begun.end(), notice.tile) != 0) return;
+            begun.push_back(notice.tile);
+            squares.push_back(notice.square);
         };
-        render(picture, canvas, settings);
-        EXPECT_EQ(wrong, 0);
-        for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
+        render(picture_of(mixed_scene(), "proved", 200, 140), canvas, settings);
+
+        std::set<std::pair<int, std::size_t>> taken;  // a size, and a square of it
+        for (std::size_t k = 0; k < begun.size(); ++k) {
+            const PixelRect rect = canvas.grid.tiles.rect(begun[k]);
+            for (const int side : {64, 32}) {
+                const std::size_t square = Squares(200, 140, side).at(rect.x0, rect.y0);
+                const bool is_first = taken.insert({side, square}).second;
+                // an empty block is done at once
+                const bool leaves_open = squares[k] < side && canvas.tiles[begun[k]].empty;
+                EXPECT_TRUE(leaves_open || is_first == (squares[k] >= side)) << begun[k];
+            }
+        }
+        EXPECT_GT(std::count(squares.begin(), squares.end(), 64), 0);
+        EXPECT_GT(std::count(squares.begin(), squares.end(), 32), 0);
+        std::size_t wanted = 0;
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
+            wanted += !some || settings.selected[t] != 0;
+        EXPECT_EQ(begun.size(), wanted);
     }
 }
 
