@@ -43,9 +43,19 @@ struct TracedTile {
     [[nodiscard]] std::size_t size() const { return rays.size(); }
 };
 
-std::vector<int> strides_of(const JobSettings& settings) {
-    const bool coarse = settings.order == Order::coarse_to_fine && settings.task != Task::shade;
-    return coarse ? std::vector<int>{64, 32, 16, 8, 4, 2, 1} : std::vector<int>{1};
+// The first pass has at least so many pixels, where a tile's share of them is no more than 4.
+constexpr std::size_t least_first_pixels = 128;
+
+std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
+    if (settings.order != Order::coarse_to_fine || settings.task == Task::shade) return {1};
+    int stride = TileGrid::block_side;
+    for (std::size_t squares = tiles / 16; stride > 8 && squares < least_first_pixels;
+         squares *= 4) {
+        stride /= 2;
+    }
+    std::vector<int> strides;
+    for (; stride > 0; stride /= 2) strides.push_back(stride);
+    return strides;
 }
 
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
@@ -68,7 +78,6 @@ class FrameJob::Work {
         : picture_(std::move(picture)),
           canvas_(canvas),
           settings_(std::move(settings)),
-          strides_(strides_of(settings_)),
           all_(all_elements(*picture_.field)),
           region_lists_(canvas.grid.regions.size()),
           region_done_(canvas.grid.regions.size()),
@@ -163,6 +172,9 @@ class FrameJob::Work {
             needed[region] = 0;
             region_order_.push_back(region);
         }
+        std::size_t tile_count = 0;
+        for (std::size_t tile = 0; tile < tiles().size(); ++tile) tile_count += selected(tile);
+        strides_ = strides_of(settings_, tile_count);
         steps_ = region_order_.size() + strides_.size() * block_order_.size();
     }
 
@@ -501,7 +513,7 @@ class FrameJob::Work {
     const Picture picture_;
     Canvas& canvas_;
     const JobSettings settings_;
-    const std::vector<int> strides_;
+    std::vector<int> strides_;  // pass by pass
     const ElementList all_;
 
     std::vector<std::size_t> region_order_, block_order_;

@@ -22,7 +22,8 @@ enum class Task : std::uint8_t {
 
 enum class Order : std::uint8_t {
     plain,           // each tile once, all of its pixels
-    // One pixel for each 64 x 64, then 32 x 32 and so on to the last: none is traced twice.
+    // One pixel for each 64 x 64, then 32 x 32 and so on to the last: none is traced twice. Where
+    // few tiles are selected it begins with smaller squares, 8 x 8 at the least.
     coarse_to_fine,
 };
 

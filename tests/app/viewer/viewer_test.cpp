@@ -20,6 +20,8 @@
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "tests/app/platform/memory_contexts.h"
+#include "tests/temporary_folder.h"
+#include "tests/tools/random_scene.h"
 
 namespace ivory {
 namespace {
@@ -251,34 +253,47 @@ TEST_P(InMemory, AFrameIsWantedOnlyWhileSomethingChanges) {
 }
 
 TEST_P(InMemory, EveryStepOfADragShowsThatStepsScene) {
-    const auto context = context_or_skip({500, 380});
+    const auto context = context_or_skip({160, 120});
     if (!context) return;
-    Driven driven(*context, {500, 380});
-    Scene scene;
-    scene.threshold = 0.3;
-    for (int i = 0; i < 100; ++i) {
-        Element element;
-        element.skeleton = PointSkeleton{{0.35 * (i % 10) - 1.6, 0.35 * (i / 10) - 1.6, 0}};
-        element.kernel = KernelKind::wyvill;
-        element.width = 0.3;
-        scene.elements.push_back(element);
-    }
-    scene.camera = Camera{{0, 0, 6}, {0, 0, 0}};
-    const std::string file = testing::TempDir() + "hundred.ivory.json";
+    Driven driven(*context, {160, 120});
+    const tests::TemporaryFolder folder;
+    const std::string file = folder / "hundred.ivory.json";
+    constexpr std::uint64_t seed = 100;
+    const Scene scene = tools::mixed_scene(100, seed);
     save_scene(scene, file);
+    // the foremost of the points, which are every third element
+    std::size_t front = 0;
+    const auto z = [&](std::size_t i) {
+        return std::get<PointSkeleton>(scene.elements[i].skeleton).position.z;
+    };
+    for (std::size_t i = 3; i < scene.elements.size(); i += 3)
+        if (z(i) > z(front)) front = i;
+    const std::string name = element_names(scene)[front];
     driven.play(R"({"drop": ")" + file + R"("}
                    {"key": "tab"}
                    {"wait": "final"})");
-    driven.state().document.select(44);
-    driven.play(R"({"grab": {"element": "point 45", "handle": "position"}})");
+    driven.state().document.select(front);
+    driven.play(R"({"grab": {"element": ")" + name + R"(", "handle": "position"}})");
+    const auto picture = [&] {
+        driven.viewer().hide_overlay(true);
+        driven.play(R"({"frames": 1})");
+        driven.viewer().hide_overlay(false);
+        return colors_of(driven.viewer().read_back(), driven.state().viewport);
+    };
+    std::vector<Rgba8> before = picture();
+    auto scene_before = driven.state().document.scene_value();
     for (int step = 0; step < 60; ++step) {
-        driven.play(R"({"move": [1, -1]}
-                       {"frames": 1})");
+        driven.play(step % 20 < 10 ? R"({"move": [3, -1]})" : R"({"move": [-2, 2]})");
+        std::vector<Rgba8> now = picture();
+        EXPECT_NE(driven.state().document.scene_value(), scene_before) << step;
         EXPECT_EQ(driven.state().picture.scene, driven.state().document.scene_value()) << step;
+        EXPECT_FALSE(now == before) << step;
+        before = std::move(now);
+        scene_before = driven.state().document.scene_value();
     }
     driven.play(R"({"release": "left"})");
     EXPECT_TRUE(viewport_is_render(driven));
-    EXPECT_EQ(driven.state().document.undo_name(), "Move point 45");
+    EXPECT_EQ(driven.state().document.undo_name(), "Move " + name);
 }
 
 // Draws the texture alone, as the viewer does.

@@ -13,6 +13,7 @@
 #include <new>
 #include <numeric>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "core/render/statistics.h"
@@ -225,8 +226,9 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
     settings.on_tile = [&](const TileNotice& notice) {
         if (inside[notice.tile]++ != 0) ++wrong;
         const int before = stride[notice.tile].exchange(notice.stride);
-        if (notice.stride != 1 && notice.stride != (before == 0 ? 16 : before / 2)) ++wrong;
-        if (notice.square != 16 && before != 0) ++wrong;
+        // so few tiles begin with four pixels each
+        if (notice.stride != 1 && notice.stride != (before == 0 ? 8 : before / 2)) ++wrong;
+        if (notice.square != 16) ++wrong;
         if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
         for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
             for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
@@ -242,43 +244,49 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
 }
 
 // One tile for each 64 x 64 pixels, then one for each 32 x 32 that has none, then the others: of
-// those that are selected.
+// those that are selected, and the fewer these are the smaller the first squares.
 TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
-    for (const bool some : {false, true}) {
-        Canvas canvas(200, 140, false);
+    constexpr int width = 900, height = 760;  // 57 x 48 tiles
+    for (const auto& [share, first_square] : {std::pair(1, 64), {2, 32}, {7, 16}}) {
+        Canvas canvas(width, height, false);
         std::vector<std::size_t> begun;
         std::vector<int> squares;
         JobSettings settings;
         settings.order = Order::coarse_to_fine;
-        if (some) {
-            settings.selected.resize(canvas.tiles.size());
-            for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
-                settings.selected[t] = (t * 7) % 5 < 2;
-        }
+        settings.selected.resize(canvas.tiles.size());
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
+            settings.selected[t] = t * 11 % 7 * static_cast<std::size_t>(share) < 7;
+        FrameJob* running = nullptr;
+        std::atomic<bool> started{false};
         settings.on_tile = [&](const TileNotice& notice) {
-            if (std::count(begun.begin(), begun.end(), notice.tile) != 0) return;
+            if (notice.stride <= 8 && !canvas.tiles[notice.tile].empty) {
+                while (!started) std::this_thread::yield();
+                running->cancel();
+                return;
+            }
             begun.push_back(notice.tile);
             squares.push_back(notice.square);
         };
-        render(picture_of(mixed_scene(), "proved", 200, 140), canvas, settings);
+        FrameJob job(picture_of(mixed_scene(), "proved", width, height), canvas, settings);
+        running = &job;
+        started = true;
+        job.finish();
 
         std::set<std::pair<int, std::size_t>> taken;  // a size, and a square of it
         for (std::size_t k = 0; k < begun.size(); ++k) {
             const PixelRect rect = canvas.grid.tiles.rect(begun[k]);
-            for (const int side : {64, 32}) {
-                const std::size_t square = Squares(200, 140, side).at(rect.x0, rect.y0);
+            for (int side = 32; side <= first_square; side *= 2) {
+                const std::size_t square = Squares(width, height, side).at(rect.x0, rect.y0);
                 const bool is_first = taken.insert({side, square}).second;
                 // an empty block is done at once
                 const bool leaves_open = squares[k] < side && canvas.tiles[begun[k]].empty;
                 EXPECT_TRUE(leaves_open || is_first == (squares[k] >= side)) << begun[k];
             }
         }
-        EXPECT_GT(std::count(squares.begin(), squares.end(), 64), 0);
-        EXPECT_GT(std::count(squares.begin(), squares.end(), 32), 0);
-        std::size_t wanted = 0;
-        for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
-            wanted += !some || settings.selected[t] != 0;
-        EXPECT_EQ(begun.size(), wanted);
+        for (int side = 16; side <= 64; side *= 2)
+            EXPECT_EQ(std::count(squares.begin(), squares.end(), side) > 0, side <= first_square);
+        EXPECT_EQ(begun.size(), static_cast<std::size_t>(std::count(
+                                    settings.selected.begin(), settings.selected.end(), 1)));
     }
 }
 
