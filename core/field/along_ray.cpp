@@ -1,6 +1,7 @@
 #include "core/field/along_ray.h"
 
 #include "core/interval/quick.h"
+#include "core/math/offset.h"
 
 namespace ivory {
 namespace {
@@ -12,21 +13,6 @@ double one_norm(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::ab
 // The lemma's range: no product of two of its quantities overflows, none that matters underflows.
 bool usable(double kappa, double reach, double span) {
     return kappa > 1e-75 && kappa < 1e75 && reach < 1e75 && kappa * span < 1e75;
-}
-
-// (o - c) + t d with one rounding, nearly: the sum and the product without error (Knuth's TwoSum,
-// the product's low part by fma), the low parts added last. Within u |v| + 8 u^2 (|o - c| + |t d|)
-// of exact.
-double offset(double o, double c, double t, double d) {
-    const double difference = o - c;
-    const double back = difference - o;
-    const double difference_low = (o - (difference - back)) - (c + back);
-    const double product = t * d;
-    const double product_low = std::fma(t, d, -product);
-    const double sum = difference + product;
-    const double sum_back = sum - difference;
-    const double sum_low = (difference - (sum - sum_back)) + (product - sum_back);
-    return sum + (sum_low + (difference_low + product_low));
 }
 
 // The vector v(t) from a point c of the skeleton to p(t), in units of the element's width.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/field/kernel.h"
+#include "core/math/offset.h"
 
 namespace ivory {
 namespace {
@@ -132,7 +133,8 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
         e.index = i;
         e.group = static_cast<std::uint32_t>(field.shape[i]) * 3 +
                   static_cast<std::uint32_t>(field.kernel[i]);
-        e.from_origin = field.a(i) - o;
+        e.c = field.a(i);
+        e.from_origin = e.c - o;
         e.m = {};
         e.extra = 0;
         e.length = 0;
@@ -338,6 +340,7 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
     const Bounded& here = bounded_by_depth_[depth];
     w.begin = t0;
     w.end = t1;
+    w.axis = bundle_.axis;
     w.middle = 0.5 * (t0 + t1);
     const double inverse_unit = 1 / unit_;
     const auto tau = [&](double t) { return static_cast<float>((t - w.middle) * inverse_unit); };
@@ -371,13 +374,19 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
             const bool kinked = a.inverse < 0;
             const double full_slope = per_length * slope_of(kind, a.least, a.peak);
 
-            const Vec3d c = e.from_origin - w.middle * bundle_.axis;
+            const Vec3d& o = bundle_.origin;
+            const Vec3d& axis = bundle_.axis;
+            const Vec3d c{-offset(o.x, e.c.x, w.middle, axis.x),
+                          -offset(o.y, e.c.y, w.middle, axis.y),
+                          -offset(o.z, e.c.z, w.middle, axis.z)};
             const double c_length = std::sqrt(dot(c, c)) * more;
-            // |away| as computed is off by `eta` in widths: the roundings of p and of c, then those
-            // of the foot, which move it by 10 u |p - c| at most, or of the circle's axis.
-            const auto etas = [&](double u, double p_error, double p_length) {
-                const double v_length = p_length + c_length;
-                double eta = p_error + (e.far + t1) * 0x1p-50 * (u == fine_u ? 0 : 1);
+            // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most
+            // H, (2) costs 7 u H for p (d - axis, the product; t - middle, d, the product; the
+            // sum), 2 u |c - M| and u^2 of its terms for c, and u (H + |c - M|) the difference. The
+            // foot moves away by 10 u |p - c| more at the most; so does the circle's axis.
+            const auto etas = [&](double u) {
+                const double v_length = H + c_length;
+                double eta = u * (8 * H + 4 * c_length) + (e.far + t1) * 0x1p-98;
                 double eta_slope = 0;
                 if (shape == Shape::segment) {
                     eta = 2 * eta + u * (12 * v_length + 3 * e.length) +
@@ -389,20 +398,16 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
                 return EntryErrors{eta / e.width * more, (eta + eta_slope) / e.width * more};
             };
 
-            // Double: p = t d and c - o, each rounded; |d| off by 2^-50 does not matter, as d is
-            // what it is. Lengths here are seen from the origin.
             {
-                const double u = fine_u;
-                const double p_error = 4 * u * (e.far + t1);
-                EntryErrors eta = etas(u, p_error, e.far + t1);
+                const EntryErrors eta = etas(fine_u);
                 usable = usable && eta.value < 5e-4;
                 const EntryErrors error =
-                    errors_of(kind, u, eta.value, eta.slope, a.least, a.peak);
+                    errors_of(kind, fine_u, eta.value, eta.slope, a.least, a.peak);
                 fine_error += b * error.value;
                 fine.slope += kinked ? full_slope : per_length * error.slope;
                 fine_sum += most;
                 const double square = e.inverse_square;
-                w.fine.push_back({e.from_origin.x, e.from_origin.y, e.from_origin.z, square,
+                w.fine.push_back({c.x, c.y, c.z, square,
                                   e.strength, kinked ? 0 : 2 * e.strength * square, e.m.x, e.m.y,
                                   e.m.z, e.extra});
                 w.fine_element.push_back(e.index);
@@ -414,11 +419,9 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
                 coarse.slope += full_slope;
                 continue;
             }
-            const double u = coarse_u;
-            const double p_error = u * (7 * H + 2 * c_length);
-            const EntryErrors eta = etas(u, p_error, H);
+            const EntryErrors eta = etas(coarse_u);
             usable = usable && eta.value < 5e-4 && eta.slope < 1e-2;
-            const EntryErrors error = errors_of(kind, u, eta.value, eta.slope, a.least, a.peak);
+            const EntryErrors error = errors_of(kind, coarse_u, eta.value, eta.slope, a.least, a.peak);
             coarse_error += b * error.value;
             coarse.slope += kinked ? full_slope : per_length * error.slope;
             coarse_sum += most;

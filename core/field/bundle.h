@@ -16,8 +16,10 @@
 //         0 <= rho'' <= 1 / rho;
 //     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
 //
-// Lengths in float stages are in units of `unit`, a power of two, and relative to the middle of the
-// window on the axis, so that the digits are spent where the surface is.
+// Places are relative to the middle of the window on the axis, so that the digits are spent where the
+// surface is, however far the origin: with M = origin + middle axis,
+//     p(t) - M = middle (d - axis) + (t - middle) d,    c - M by core/math/offset.h.            (2)
+// Lengths in the float stage are in units of `unit`, a power of two.
 #pragma once
 
 #include <array>
@@ -62,6 +64,7 @@ constexpr std::size_t bundle_groups = 9;  // shape * 3 + kernel
 // One window, ready for the inner loops. Entries are sorted by group.
 struct Window {
     double begin = 0, middle = 0, end = 0;  // t
+    Vec3d axis;                             // of the bundle
     float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
 
     // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per square of a scene
@@ -73,7 +76,7 @@ struct Window {
     StageBounds coarse_bounds;  // per unit
     bool coarse_usable = false;
 
-    std::vector<BundleEntry<double>> fine;  // p - c with p relative to the origin, scene units
+    std::vector<BundleEntry<double>> fine;  // likewise, in scene units
     std::array<std::uint32_t, bundle_groups> fine_count{};
     std::vector<std::uint32_t> fine_element;  // index into Field
     StageBounds fine_bounds;                  // per scene unit
@@ -108,6 +111,7 @@ class BundleField {
   private:
     struct Element {
         std::uint32_t index, group;
+        Vec3d c;             // point: position; segment: a; circle: centre
         Vec3d from_origin;   // c - o
         Vec3d m;             // segment: b - a; circle: unit normal
         double extra;        // segment: 1 / |b - a|^2; circle: radius

@@ -331,6 +331,18 @@ struct Batch {
     std::size_t count = 0;
 };
 
+// (2) of core/field/bundle.h.
+HWY_INLINE Vec3v<D> place(const Window& window, const Vec3v<D>& direction, V<D> t) {
+    const D d;
+    const V<D> middle = hn::Set(d, window.middle);
+    const V<D> tau = hn::Sub(t, middle);
+    const auto component = [&](V<D> along, double axis) HWY_ATTR {
+        return hn::MulAdd(tau, along, hn::Mul(middle, hn::Sub(along, hn::Set(d, axis))));
+    };
+    return {component(direction.x, window.axis.x), component(direction.y, window.axis.y),
+            component(direction.z, window.axis.z)};
+}
+
 HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
     const hn::RebindToUnsigned<D> bits;
     return hn::BitCast(
@@ -378,8 +390,7 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
         M<D> done = hn::FirstN(d, 0);
         for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
             steps += hn::CountTrue(d, open);
-            const Vec3v<D> p{hn::Mul(m, direction.x), hn::Mul(m, direction.y),
-                             hn::Mul(m, direction.z)};
+            const Vec3v<D> p = place(window, direction, m);
             const FieldValue<D> value =
                 evaluate(d, window.fine, window.fine_count, threshold, p, direction);
             const V<D> f_hi = hn::Add(value.f, c(bounds.above));
@@ -512,8 +523,8 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
             at[k] = t[item];
         }
         const V<D> m = hn::Load(d, at);
-        const Vec3v<D> p{hn::Mul(m, hn::Load(d, dx)), hn::Mul(m, hn::Load(d, dy)),
-                         hn::Mul(m, hn::Load(d, dz))};
+        const Vec3v<D> p =
+            place(window, {hn::Load(d, dx), hn::Load(d, dy), hn::Load(d, dz)}, m);
         const V<D> zero = hn::Zero(d);
         SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         M<D> defined = hn::FirstN(d, N);
