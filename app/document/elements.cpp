@@ -84,7 +84,7 @@ Element new_element(ElementShape shape, Vec3d place, double size, std::size_t el
                                                {tidy(at.x + size, exponent), at.y, at.z}};
             break;
         case ElementShape::circle:
-            element.skeleton = CircleSkeleton{at, {0, 0, 1}, 1.5 * size};
+            element.skeleton = CircleSkeleton{at, {0, 0, 1}, tidy(1.5 * size, exponent)};
             break;
     }
     element.color = palette[elements_before % palette.size()];

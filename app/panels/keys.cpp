@@ -41,9 +41,13 @@ void press(ViewerState& state, const KeyPress& press) {
 void handle_keys(ViewerState& state, const Input& input) {
     // keys belong to a drag, a text field or a dialog first
     if (state.document.dragging() || ImGui::GetIO().WantTextInput) return;
-    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) return;
     if (state.panels.question || state.panels.browser.mode != FileBrowser::Mode::closed) return;
-    for (const KeyPress& key : input.pressed) press(state, key);
+    // A menu or a colour picker has the plain keys, Escape among them: one can undo and save with it open.
+    const bool popup =
+        ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    for (const KeyPress& key : input.pressed)
+        if (!popup || key.modifiers.control) press(state, key);
+    if (popup) return;
     if (input.text.find(U'?') != std::u32string::npos) run(state, Action::help);
 }
 

@@ -99,6 +99,24 @@ void draw_figures(const ViewerState& state) {
     }
 }
 
+// What the hand on a number or a handle can do besides; nullptr: there is none.
+const char* hint(const ViewerState& state) {
+    if (state.panels.number)
+        return "Enter  set        Tab  the next        +=1  *=2  change by        Esc  leave";
+    if (state.panels.dragged.begun) return "Shift  finer        Esc  cancel";
+    if (state.document.dragging())
+        return "X  Y  Z  along an axis        Shift  finer        Ctrl  round numbers        Esc  "
+               "cancel";
+    return nullptr;
+}
+
+void draw_hint(const ViewerState& state, const char* text) {
+    draw_progress(state);
+    ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).quiet);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+}
+
 void draw_message_text(ViewerState& state) {
     const Palette& colors = palette(state.theme);
     const float side = ImGui::GetFrameHeight();
@@ -133,10 +151,12 @@ void draw_status_bar(ViewerState& state, const WindowRect& rect) {
                 ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
-    if (state.message.text.empty()) {
-        draw_figures(state);
-    } else {
+    if (!state.message.text.empty()) {
         draw_message_text(state);
+    } else if (const char* const text = hint(state)) {
+        draw_hint(state, text);
+    } else {
+        draw_figures(state);
     }
     ImGui::End();
 }

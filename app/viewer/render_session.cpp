@@ -380,7 +380,7 @@ class RenderSession::Director {
     // --- the director's thread ---
 
     void direct() {
-        yield_to_other_threads();  // and so do the workers, which are its children
+        if (settings_.yields) yield_to_other_threads();  // and the workers, which it starts
         std::unique_lock lock(mutex_);
         while (true) {
             condition_.wait(lock, [this] { return stop_ || wanted_; });

@@ -94,7 +94,7 @@ struct Viewer::Parts {
           settings(std::move(the_settings)),
           imgui_renderer(context.gl()),
           texture(context.gl()),
-          session({settings.threads, settings.tolerance, settings.wake}) {
+          session({settings.threads, settings.tolerance, settings.renderer_yields, settings.wake}) {
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
         io.LogFilename = nullptr;

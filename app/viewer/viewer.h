@@ -20,6 +20,7 @@ struct ViewerSettings {
     int threads = 1;               // of the renderer
     double tolerance = 1e-6;       // E of the pictures, as `ivory render` has it
     std::function<void()> wake;    // called by other threads: `frame` has something new to show
+    bool renderer_yields = false;  // see RenderSession::Settings
     bool hold_back_coarse = true;  // see RenderSession::poll
 };
 

@@ -42,6 +42,7 @@ void run_window(const WindowSettings& settings) {
     ViewerSettings viewer_settings;
     viewer_settings.threads = settings.threads;
     viewer_settings.wake = [&] { window->wake(); };
+    viewer_settings.renderer_yields = true;
     Viewer viewer(*window, std::move(viewer_settings));
     connect_clipboard(*window);
     viewer.state().widgets.whole_lists = false;

@@ -111,6 +111,7 @@ class Bench {
         ViewerSettings settings;
         settings.threads = options.threads;
         settings.wake = [&wake_up] { wake_up.wake(); };
+        settings.renderer_yields = true;
         return settings;
     }
 

@@ -297,6 +297,16 @@ TEST(Elements, EachShapeIsAddedSelectedAndValid) {
     EXPECT_TRUE(bench.scene().elements.empty());
 }
 
+TEST(Elements, ANewCirclesRadiusHasFewDigits) {
+    Scene scene = figure();
+    for (Element& element : scene.elements) element.width = 0.38;
+    ViewerBench bench(scene);
+    bench.click("add.circle");
+    const std::string radius =
+        number_text(std::get<CircleSkeleton>(bench.scene().elements.back().skeleton).radius);
+    EXPECT_LE(radius.size(), 6u) << radius;
+}
+
 TEST(Elements, RowsSelectHideAndReorder) {
     ViewerBench bench(figure());
     bench.click("row.segment 1");
@@ -357,6 +367,12 @@ TEST(Inspector, KernelColorAndVisibility) {
     EXPECT_EQ(bench.element(0).color, (Color{0.8, 0.123456789, 0.8}));
     bench.enter("element.color.r", "1.5");
     EXPECT_EQ(bench.element(0).color.x, 0.8);
+    bench.key(Key::z, {.control = true});
+    EXPECT_EQ(bench.element(0).color, (Color{0.8, 0.8, 0.8}));
+    bench.key(Key::h);  // but plain keys are the popup's
+    EXPECT_FALSE(bench.element(0).visible);
+    bench.key(Key::y, {.control = true});
+    EXPECT_EQ(bench.element(0).color.y, 0.123456789);
     bench.key(Key::escape);
     EXPECT_EQ(bench.state.widgets.find("element.color.r"), nullptr);
     EXPECT_EQ(bench.state.document.selected(), 0u);  // Escape was the popup's

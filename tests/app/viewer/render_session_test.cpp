@@ -74,7 +74,7 @@ std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize pict
 class Session : public testing::Test {
   protected:
     WakeUp wake_up;
-    RenderSession session{{2, tolerance, [this] { wake_up.wake(); }}};
+    RenderSession session{{2, tolerance, false, [this] { wake_up.wake(); }}};
 
     void show(const SceneValue& scene, const Camera& c = camera(), WindowSize picture_size = size) {
         session.show({scene, c, picture_size, std::nullopt, Clock::now()});
@@ -364,7 +364,7 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
 
 TEST(RenderSessionLife, EndsWhileItWorks) {
     for (int i = 0; i < 20; ++i) {
-        RenderSession session({2, tolerance, [] {}});
+        RenderSession session({2, tolerance, i % 2 == 0, [] {}});
         session.show({with_left_blob_at(-1.2), camera(), {600, 400}, std::nullopt, Clock::now()});
         std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
         session.poll(FirstPicture::any);
