@@ -19,8 +19,8 @@ constexpr double bend_limit = 2;
 
 constexpr double coarse_cut_share = 0x1p-26, fine_cut_share = 0x1p-40;
 
-// And until what is only known of |f'|, near the axes of circles, could change f by no more than this
-// share of T; but not below this share of the least width.
+// And until what is only known of |f'|, near the axes of circles, could change f by no more than
+// this share of T; but not below this share of the least width.
 constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 constexpr std::size_t greatest_depth = 30;
 
@@ -51,9 +51,9 @@ double slope_of(KernelKind kind, double least, double peak) {
 //     ds <= 2 sqrt(s) eta + eta^2 + 7 u s,
 // five roundings of the square and one of 1 / w^2; the exponential adds 2 u, so that with
 // e^ds <= 1.02 |dk| <= 1.02 e^-s (ds + 2 u). (For s in the hundreds e^ds is larger, but then
-// e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak (sqrt(least) + c_j)^j with
-// c_j < 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2) e^-y are 0.43,
-// 0.37, 0.41 for j = 1, 2, 3. With r = sqrt(least) + 1 that is at most
+// e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak (sqrt(least) +
+// c_j)^j with c_j < 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2)
+// e^-y are 0.43, 0.37, 0.41 for j = 1, 2, 3. With r = sqrt(least) + 1 that is at most
 //     |dF|  <= |b| peak (3 eta r + 10 u r^2),
 //     |dF'| <= 2 |b| / w peak (4 eta_slope r^2 + 40 u r^3),
 // the second from |d(k x)| <= |dk| sqrt(s) + 1.02 k (eta_slope + 5 u sqrt(s)) and four more
@@ -221,9 +221,9 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
             least_between(std::max(d0 - error, 0.0), std::max(d1 - error, 0.0), L) - aside;
         // The distance to any set changes by at most L over the window; to a convex one it is
         // convex.
-        const double far = (shape_of(e.group) == Shape::circle ? 0.5 * (d0 + d1 + L)
-                                                               : std::max(d0, d1)) +
-                           error + aside;
+        const double far =
+            (shape_of(e.group) == Shape::circle ? 0.5 * (d0 + d1 + L) : std::max(d0, d1)) + error +
+            aside;
         a.least = near > 0 ? near * near * e.inverse_square * less : 0;
         a.most = far * far * e.inverse_square * more;
         a.peak = peak_of(kind, a.least);
@@ -249,8 +249,8 @@ bool BundleField::bound(std::size_t depth, double t0, double t1) {
         double rise = 0, fall = 0;
         bend(e, a, t0, t1, rise, fall);
         if (a.inverse < 0) {
-            here.kinks += 2 * std::abs(e.strength) / e.width *
-                          slope_of(kernel_of(e.group), a.least, a.peak);
+            here.kinks +=
+                2 * std::abs(e.strength) / e.width * slope_of(kernel_of(e.group), a.least, a.peak);
         }
         here.rise += (e.strength > 0 ? rise : fall) * std::abs(e.strength) * e.inverse_square;
         here.fall += (e.strength > 0 ? fall : rise) * std::abs(e.strength) * e.inverse_square;
@@ -380,8 +380,8 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
                           -offset(o.y, e.c.y, w.middle, axis.y),
                           -offset(o.z, e.c.z, w.middle, axis.z)};
             const double c_length = std::sqrt(dot(c, c)) * more;
-            // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most
-            // H, (2) costs 7 u H for p (d - axis, the product; t - middle, d, the product; the
+            // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at
+            // most H, (2) costs 7 u H for p (d - axis, the product; t - middle, d, the product; the
             // sum), 2 u |c - M| and u^2 of its terms for c, and u (H + |c - M|) the difference. The
             // foot moves away by 10 u |p - c| more at the most; so does the circle's axis.
             const auto etas = [&](double u) {
@@ -407,9 +407,9 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
                 fine.slope += kinked ? full_slope : per_length * error.slope;
                 fine_sum += most;
                 const double square = e.inverse_square;
-                w.fine.push_back({c.x, c.y, c.z, square,
-                                  e.strength, kinked ? 0 : 2 * e.strength * square, e.m.x, e.m.y,
-                                  e.m.z, e.extra});
+                w.fine.push_back({c.x, c.y, c.z, square, e.strength,
+                                  kinked ? 0 : 2 * e.strength * square, e.m.x, e.m.y, e.m.z,
+                                  e.extra});
                 w.fine_element.push_back(e.index);
                 ++w.fine_count[group];
             }
@@ -421,7 +421,8 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
             }
             const EntryErrors eta = etas(coarse_u);
             usable = usable && eta.value < 5e-4 && eta.slope < 1e-2;
-            const EntryErrors error = errors_of(kind, coarse_u, eta.value, eta.slope, a.least, a.peak);
+            const EntryErrors error =
+                errors_of(kind, coarse_u, eta.value, eta.slope, a.least, a.peak);
             coarse_error += b * error.value;
             coarse.slope += kinked ? full_slope : per_length * error.slope;
             coarse_sum += most;
@@ -430,10 +431,9 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
             const bool segment = shape == Shape::segment;
             const double m_unit = segment ? inverse_unit : 1;
             const double extra = segment ? e.extra * unit_ * unit_ : e.extra * inverse_unit;
-            w.coarse.push_back({f(c.x * inverse_unit), f(c.y * inverse_unit),
-                                f(c.z * inverse_unit), f(square), f(e.strength),
-                                kinked ? 0 : f(2 * e.strength * square), f(e.m.x * m_unit),
-                                f(e.m.y * m_unit), f(e.m.z * m_unit), f(extra)});
+            w.coarse.push_back({f(c.x * inverse_unit), f(c.y * inverse_unit), f(c.z * inverse_unit),
+                                f(square), f(e.strength), kinked ? 0 : f(2 * e.strength * square),
+                                f(e.m.x * m_unit), f(e.m.y * m_unit), f(e.m.z * m_unit), f(extra)});
             // 1 / |m|^2 of a very short segment and such are beyond float.
             usable = usable && square < 1e12 && extra < 1e12 && b < 1e12;
             ++w.coarse_count[group];
@@ -457,7 +457,8 @@ void BundleField::finish(std::size_t depth, double t0, double t1) {
     double slope_sum = 0;
     for (const Active& a : here.active) {
         const Element& e = elements_[a.element];
-        slope_sum += 2 * std::abs(e.strength) / e.width * slope_of(kernel_of(e.group), a.least, a.peak);
+        slope_sum +=
+            2 * std::abs(e.strength) / e.width * slope_of(kernel_of(e.group), a.least, a.peak);
     }
     const double n = static_cast<double>(here.active.size() + 4);
     coarse.slope = (coarse.slope + n * coarse_u * slope_sum) * unit_ * sums + 1e-30;

@@ -16,8 +16,8 @@
 //         0 <= rho'' <= 1 / rho;
 //     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
 //
-// Places are relative to the middle of the window on the axis, so that the digits are spent where the
-// surface is, however far the origin: with M = origin + middle axis,
+// Places are relative to the middle of the window on the axis, so that the digits are spent where
+// the surface is, however far the origin: with M = origin + middle axis,
 //     p(t) - M = middle (d - axis) + (t - middle) d,    c - M by core/math/offset.h.            (2)
 // Lengths in the float stage are in units of `unit`, a power of two.
 #pragma once
@@ -49,7 +49,7 @@ struct BundleEntry {
     Real cx, cy, cz;
     Real inverse_square;  // 1 / w^2
     Real strength;        // b
-    Real slope;           // 2 b / w^2: F' = slope k'(s) away . d; 0 where `kinked` counts it instead
+    Real slope;  // 2 b / w^2: F' = slope k'(s) away . d; 0 where `kinked` counts it instead
     Real mx, my, mz, extra;
 };
 
@@ -111,11 +111,11 @@ class BundleField {
   private:
     struct Element {
         std::uint32_t index, group;
-        Vec3d c;             // point: position; segment: a; circle: centre
-        Vec3d from_origin;   // c - o
-        Vec3d m;             // segment: b - a; circle: unit normal
-        double extra;        // segment: 1 / |b - a|^2; circle: radius
-        double length;       // of m, 0 for points and circles
+        Vec3d c;                                 // point: position; segment: a; circle: centre
+        Vec3d from_origin;                       // c - o
+        Vec3d m;                                 // segment: b - a; circle: unit normal
+        double extra;                            // segment: 1 / |b - a|^2; circle: radius
+        double length;                           // of m, 0 for points and circles
         double width, inverse_square, strength;  // strength scaled
         double along, across_square;             // c - o split by the axis
         double far;                              // >= |c - o| + length + radius

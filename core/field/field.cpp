@@ -17,9 +17,8 @@ bool is_compact(const Field& field) {
     }
     for (std::size_t i = 0; i < field.size(); ++i) {
         const Vec3d a = field.a(i), b = field.b(i);
-        const double most =
-            std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x), std::abs(b.y),
-                      std::abs(b.z), field.radius[i]});
+        const double most = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x),
+                                      std::abs(b.y), std::abs(b.z), field.radius[i]});
         const double share = std::abs(field.strength[i]) / field.threshold;
         if (!(most < largest && share > 1e-30 && share < 1e12)) return false;
     }

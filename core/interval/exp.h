@@ -70,11 +70,10 @@ struct ExpConstants<double> {
     static constexpr double least = -708;
     static constexpr double greatest = 709;
     // Q(r), lowest power first.
-    static constexpr double tail[] = {0x1.5555555555556p-3,  0x1.5555555555556p-5,
-                                      0x1.11111111109b6p-7,  0x1.6c16c16c162d8p-10,
-                                      0x1.a01a01a7c12bbp-13, 0x1.a01a01a6d6122p-16,
-                                      0x1.71de0dbd7b455p-19, 0x1.27e4db6eb2e8bp-22,
-                                      0x1.af387497dfeffp-26, 0x1.1f72e3be86384p-29};
+    static constexpr double tail[] = {
+        0x1.5555555555556p-3,  0x1.5555555555556p-5,  0x1.11111111109b6p-7,  0x1.6c16c16c162d8p-10,
+        0x1.a01a01a7c12bbp-13, 0x1.a01a01a6d6122p-16, 0x1.71de0dbd7b455p-19, 0x1.27e4db6eb2e8bp-22,
+        0x1.af387497dfeffp-26, 0x1.1f72e3be86384p-29};
     using Bits = std::uint64_t;
 };
 

@@ -63,7 +63,8 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
     const std::size_t N = hn::Lanes(d);
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
     for (std::size_t k = 0; k < lanes.count; k += N) {
-        const Vec3v to_viewer{hn::Neg(hn::Load(d, &lanes.dx[k])), hn::Neg(hn::Load(d, &lanes.dy[k])),
+        const Vec3v to_viewer{hn::Neg(hn::Load(d, &lanes.dx[k])),
+                              hn::Neg(hn::Load(d, &lanes.dy[k])),
                               hn::Neg(hn::Load(d, &lanes.dz[k]))};
         Vec3v normal{hn::Load(d, &lanes.nx[k]), hn::Load(d, &lanes.ny[k]),
                      hn::Load(d, &lanes.nz[k])};
@@ -81,13 +82,13 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
                   hn::IfThenElse(turned, hn::Neg(normal.z), normal.z)};
         facing = hn::Abs(facing);
 
-        // From all around: brighter from above; at grazing sight the surface mirrors (Schlick 1994).
+        // From all around: brighter from above; at grazing sight the surface mirrors (Schlick
+        // 1994).
         const V upward = hn::Add(half, hn::Mul(half, dot(normal, set(lighting.zenith))));
         const V around = hn::Add(hn::Set(d, ground), hn::Mul(hn::Set(d, sky - ground), upward));
         const V graze = hn::Sub(one, hn::Min(facing, one));
         const V graze2 = hn::Mul(graze, graze);
-        const V mirrored =
-            hn::Mul(hn::Mul(hn::Set(d, rim), upward), hn::Mul(graze2, graze2));
+        const V mirrored = hn::Mul(hn::Mul(hn::Set(d, rim), upward), hn::Mul(graze2, graze2));
         Vec3v light{hn::Add(hn::Mul(around, color.x), mirrored),
                     hn::Add(hn::Mul(around, color.y), mirrored),
                     hn::Add(hn::Mul(around, color.z), mirrored)};
@@ -105,9 +106,8 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
             const V across = hn::Div(dot(normal, halfway), hn::Sqrt(dot(halfway, halfway)));
             // Fades in with the light itself, so that no highlight is cut at the edge of the
             // shadow.
-            const V gloss =
-                hn::Mul(hn::Mul(hn::Set(d, highlight), lobe(hn::Min(across, one))),
-                        hn::Min(one, hn::Mul(hn::Set(d, 4.0), lit)));
+            const V gloss = hn::Mul(hn::Mul(hn::Set(d, highlight), lobe(hn::Min(across, one))),
+                                    hn::Min(one, hn::Mul(hn::Set(d, 4.0), lit)));
             const V share = hn::Mul(hn::Set(d, diffuse), lit);
             const auto add = [&](V sum, V of_color, double radiance) HWY_ATTR {
                 const V lamp_light = hn::Set(d, radiance);
@@ -134,11 +134,11 @@ void directions(const View& view, int width, int height, std::size_t count, cons
     const V s = hn::Set(d, view.s);
     for (std::size_t k = 0; k < count; k += N) {
         const V u = hn::Div(
-            hn::Mul(hn::Mul(hn::Sub(hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, i + k), half)),
-                                            columns),
-                                    one),
-                            s),
-                    columns),
+            hn::Mul(
+                hn::Mul(hn::Sub(hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, i + k), half)), columns),
+                                one),
+                        s),
+                columns),
             rows);
         const V v = hn::Mul(
             hn::Sub(one, hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, j + k), half)), rows)), s);

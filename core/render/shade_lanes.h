@@ -17,7 +17,7 @@ struct ShadingLanes {
     std::size_t count = 0;
     alignas(64) std::array<double, capacity> dx, dy, dz;  // of the ray, length 1
     alignas(64) std::array<double, capacity> nx, ny, nz;  // normal, length 1, or 0
-    alignas(64) std::array<double, capacity> r, g, b;     // in: the surface's colour; out: the light
+    alignas(64) std::array<double, capacity> r, g, b;  // in: the surface's colour; out: the light
 
     void add(const Vec3d& direction, const SurfacePoint& surface) {
         dx[count] = direction.x;

@@ -13,8 +13,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // one by one.
 constexpr int budget = 1024;
 
-// The t up to which the places of core/field/bundle.h are close enough for normals and colours: they
-// are off by 2^-98 of it.
+// The t up to which the places of core/field/bundle.h are close enough for normals and colours:
+// they are off by 2^-98 of it.
 double exact_limit(const Field& field, const Bundle& bundle) {
     const Vec3d& o = bundle.origin;
     const double limit = 1e9 * field.least_width;

@@ -1,5 +1,5 @@
-// Many rays at a time: windows of a bundle (core/field/bundle.h) from front to back, in each of them
-// safe steps in float and the enclosure of the root in double (core/trace/packet_steps.h).
+// Many rays at a time: windows of a bundle (core/field/bundle.h) from front to back, in each of
+// them safe steps in float and the enclosure of the root in double (core/trace/packet_steps.h).
 //
 // The proof of a hit: f < 0 on every window before, by the sum of upper bounds or by safe steps,
 // and in its own up to a place from which g = f - (what is left out) rises; there a line above f is

@@ -5,8 +5,8 @@
 
 #include "core/interval/exp.h"
 
-// Vectors without a fixed length are no members of structures; the others are of no use beside SSE2,
-// SSE4, AVX2 and AVX-512.
+// Vectors without a fixed length are no members of structures; the others are of no use beside
+// SSE2, SSE4, AVX2 and AVX-512.
 #define HWY_DISABLED_TARGETS \
     (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -50,8 +50,7 @@ HWY_INLINE V<Tag> exp_minus(Tag d, V<Tag> s) {
         const V<Tag> q45 = hn::MulAdd(c(t[5]), r, c(t[4]));
         const V<Tag> q67 = hn::MulAdd(c(t[7]), r, c(t[6]));
         const V<Tag> q89 = hn::MulAdd(c(t[9]), r, c(t[8]));
-        q = hn::MulAdd(r4, hn::MulAdd(r4, q89, hn::MulAdd(q67, r2, q45)),
-                       hn::MulAdd(q23, r2, q01));
+        q = hn::MulAdd(r4, hn::MulAdd(r4, q89, hn::MulAdd(q67, r2, q45)), hn::MulAdd(q23, r2, q01));
     } else {
         const auto& t = C::tail;
         const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
@@ -60,7 +59,8 @@ HWY_INLINE V<Tag> exp_minus(Tag d, V<Tag> s) {
     }
     const V<Tag> tail = hn::Mul(hn::Mul(r, r2), q);
     const V<Tag> sum = hn::Add(c(1), hn::Add(r, hn::MulAdd(c(Real(0.5)), r2, tail)));
-    const auto exponent = hn::ShiftLeft<sizeof(Real) == 8 ? 52 : 23>(hn::BitCast(bits, shifted));
+    const auto exponent =
+        hn::ShiftLeft < sizeof(Real) == 8 ? 52 : 23 > (hn::BitCast(bits, shifted));
     const V<Tag> scaled = hn::BitCast(d, hn::Add(hn::BitCast(bits, sum), exponent));
     return hn::IfThenElseZero(hn::Le(s, c(-C::least)), scaled);
 }
@@ -80,7 +80,8 @@ HWY_INLINE KernelValue<Tag> kernel(Tag d, V<Tag> s) {
     } else if constexpr (kind == KernelKind::wyvill) {
         // (1 - s)^2 (9 - 4 s) / 9 and -2/9 (1 - s) (11 - 6 s)
         const V<Tag> in = hn::Max(hn::Sub(c(1), s), c(0));
-        const V<Tag> k = hn::Mul(hn::Mul(in, in), hn::Mul(hn::NegMulAdd(c(4), s, c(9)), c(1.0 / 9)));
+        const V<Tag> k =
+            hn::Mul(hn::Mul(in, in), hn::Mul(hn::NegMulAdd(c(4), s, c(9)), c(1.0 / 9)));
         const V<Tag> dk = hn::Mul(hn::Mul(in, c(-2.0 / 9)), hn::NegMulAdd(c(6), s, c(11)));
         return {k, dk};
     } else {
@@ -146,8 +147,7 @@ struct FieldValue {
 
 template <Shape shape, KernelKind kind, class Tag>
 HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std::uint32_t count,
-                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction,
-                          FieldValue<Tag>& sum) {
+                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
     for (const auto* const end = entry + count; entry != end; ++entry) {
         V<Tag> square;
         const Vec3v<Tag> away = away_from<shape>(d, *entry, p, square);
@@ -273,12 +273,10 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
 
             // The parabola below f: with a zero in the window, g rises up to there.
             const V<F> firm = hn::Mul(slope_lo, one_less);
-            const V<F> below_square =
-                hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
-            const V<F> latest =
-                hn::Mul(hn::Div(hn::Mul(c(-2), f_lo),
-                                hn::Add(firm, hn::Sqrt(hn::Max(below_square, zero)))),
-                        one_more);
+            const V<F> below_square = hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
+            const V<F> latest = hn::Mul(
+                hn::Div(hn::Mul(c(-2), f_lo), hn::Add(firm, hn::Sqrt(hn::Max(below_square, zero)))),
+                one_more);
             const V<F> latest_tau = hn::Add(tau, latest);
             const M<F> rises =
                 hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, zero)),
@@ -289,22 +287,21 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
             const V<F> b = hn::MulAdd(hn::Abs(slope_hi), hn::Set(d, tight), slope_hi);
             const V<F> root = hn::Sqrt(hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
             const M<F> upward = hn::Gt(b, zero);
-            const V<F> numerator =
-                hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
+            const V<F> numerator = hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
             const V<F> denominator = hn::IfThenElse(upward, hn::Add(root, b), rise);
-            const V<F> safe =
-                hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
+            const V<F> safe = hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
             const M<F> steps_on = hn::AndNot(rises, walking);
             // Nothing gets on, or a number is lost: not slack < safe < infinity.
-            undecided = hn::Or(
-                undecided, hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
+            undecided =
+                hn::Or(undecided,
+                       hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
             const V<F> next = hn::Add(tau, safe);
 
             // Lanes change their ways.
             guess_lo = hn::IfThenElse(rises, tau, guess_lo);
             guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
-            const V<F> first_guess = hn::Min(
-                hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau);
+            const V<F> first_guess =
+                hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau);
             tau = hn::IfThenElse(steps_on, next, tau);
             tau = hn::IfThenElse(guessing, newton, tau);
             tau = hn::IfThenElse(rises, first_guess, tau);
@@ -352,8 +349,8 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
 // f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
 // least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
-std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
-                            Batch& batch, Lanes& lanes) {
+std::uint64_t enclose_batch(const Window& window, double threshold, double half_width, Batch& batch,
+                            Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
@@ -372,16 +369,15 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
                                  hn::Load(d, batch.dz + first)};
         // The cell, in units of t: directions scaled so that their largest component lies in
         // [1, 2) make t half as long here, as in core/trace/clip.h, and so does the cell.
-        const V<D> largest = hn::Max(hn::Max(hn::Abs(direction.x), hn::Abs(direction.y)),
-                                     hn::Abs(direction.z));
+        const V<D> largest =
+            hn::Max(hn::Max(hn::Abs(direction.x), hn::Abs(direction.y)), hn::Abs(direction.z));
         const V<D> shift = hn::IfThenElse(hn::Lt(largest, c(1)), c(2), c(1));
         const V<D> sx = hn::Mul(direction.x, shift), sy = hn::Mul(direction.y, shift),
                    sz = hn::Mul(direction.z, shift);
         const V<D> square = hn::Add(hn::Add(hn::Mul(sx, sx), hn::Mul(sy, sy)), hn::Mul(sz, sz));
         const V<D> speed = hn::Mul(hn::Sqrt(square), c(1 + 8 * 0x1p-53));
         const V<D> cell = hn::Mul(
-            greatest_power_of_two(
-                d, hn::Mul(hn::Div(c(half_width), speed), c(1 - 8 * 0x1p-53))),
+            greatest_power_of_two(d, hn::Mul(hn::Div(c(half_width), speed), c(1 - 8 * 0x1p-53))),
             shift);
 
         V<D> m = hn::Load(d, batch.t + first);
@@ -401,26 +397,24 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
             const V<D> slope_hi = hn::Mul(hn::Add(value.slope, bend), c(1 + 0x1p-40));
             // Then size / slope_lo < delta.
-            const M<D> firm =
-                hn::And(hn::And(hn::Gt(value.slope, zero),
-                                hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
-                        hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
-                                hn::Le(hn::Add(m, delta), c(window.end))));
+            const M<D> firm = hn::And(
+                hn::And(hn::Gt(value.slope, zero), hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
+                hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
+                        hn::Le(hn::Add(m, delta), c(window.end))));
             // The zeros of the outer lines, each with its steeper or flatter slope.
-            const V<D> first_x = hn::Div(
-                hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), slope_lo, slope_hi));
-            const V<D> last_x = hn::Div(
-                hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), slope_hi, slope_lo));
+            const V<D> first_x =
+                hn::Div(hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), slope_lo, slope_hi));
+            const V<D> last_x =
+                hn::Div(hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), slope_hi, slope_lo));
             const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
             const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
             const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
             const V<D> line = hn::Mul(hn::Floor(hn::Div(from, cell)), cell);
             const V<D> next = hn::Add(line, cell);
-            const M<D> decided =
-                hn::And(hn::And(open, firm),
-                        hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
-                                // finer cells than 8 ulp are made by other means
-                                hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
+            const M<D> decided = hn::And(hn::And(open, firm),
+                                         hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
+                                                 // finer cells than 8 ulp are made by other means
+                                                 hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
             lo = hn::IfThenElse(decided, line, lo);
             hi = hn::IfThenElse(decided, next, hi);
             done = hn::Or(done, decided);
@@ -494,8 +488,8 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
             const V<D> along = dot<D>(v, m);
             const V<D> across_square = hn::NegMulAdd(along, along, dot<D>(v, v));
             const V<D> least = hn::Set(d, 1e-12 / entry[k].inverse_square);
-            defined = hn::And(defined, hn::Or(hn::Gt(across_square, least),
-                                              hn::Eq(value.dk, hn::Zero(d))));
+            defined = hn::And(defined,
+                              hn::Or(hn::Gt(across_square, least), hn::Eq(value.dk, hn::Zero(d))));
         }
         if (entry[k].strength > 0) {
             const Color& color = field.color[element[k]];
@@ -523,8 +517,7 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
             at[k] = t[item];
         }
         const V<D> m = hn::Load(d, at);
-        const Vec3v<D> p =
-            place(window, {hn::Load(d, dx), hn::Load(d, dy), hn::Load(d, dz)}, m);
+        const Vec3v<D> p = place(window, {hn::Load(d, dx), hn::Load(d, dy), hn::Load(d, dz)}, m);
         const V<D> zero = hn::Zero(d);
         SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         M<D> defined = hn::FirstN(d, N);
@@ -557,8 +550,7 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
 }  // namespace
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{prepare, walk, enclose, surface,
-                                   hwy::TargetName(HWY_TARGET)};
+    static const PacketSteps steps{prepare, walk, enclose, surface, hwy::TargetName(HWY_TARGET)};
     return steps;
 }
 

@@ -33,7 +33,7 @@ struct Lanes {
     alignas(64) std::array<float, capacity> fx, fy, fz;   // the same, rounded
     alignas(64) std::array<float, capacity> ex, ey, ez;   // direction - axis, rounded
     alignas(64) std::array<std::int32_t, capacity> state;
-    alignas(64) std::array<float, capacity> guess;         // tau
+    alignas(64) std::array<float, capacity> guess;  // tau
     alignas(64) std::array<double, capacity> t_lo, t_hi;
 };
 

@@ -17,9 +17,7 @@ struct RayBundle {
     alignas(64) std::array<double, capacity> dx, dy, dz;
 
     [[nodiscard]] std::size_t size() const { return count; }
-    [[nodiscard]] Ray ray(std::size_t k) const {
-        return {bundle.origin, {dx[k], dy[k], dz[k]}};
-    }
+    [[nodiscard]] Ray ray(std::size_t k) const { return {bundle.origin, {dx[k], dy[k], dz[k]}}; }
     void add(const Vec3d& direction) {
         dx[count] = direction.x;
         dy[count] = direction.y;

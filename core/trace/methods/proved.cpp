@@ -25,8 +25,8 @@ double power_of_two_below(double x) {
     return std::ldexp(1.0, exponent - 1);
 }
 
-// Half of what an answer may be wide, in scene units. A coarser grid than 2^-20 widths would save at
-// most one step of the walk, and hide bumps that are thinner than a cell.
+// Half of what an answer may be wide, in scene units. A coarser grid than 2^-20 widths would save
+// at most one step of the walk, and hide bumps that are thinner than a cell.
 double greatest_cell(const Field& field, double tolerance) {
     return 0.5 * std::min(tolerance, 0x1p-20) * field.least_width;
 }
@@ -55,8 +55,7 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     const double speed =
         std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
     const auto in_t = [&](double length) { return length / speed * (1 - 8 * unit_roundoff); };
-    const Precision precision{
-        power_of_two_below(in_t(greatest_cell(field, options.tolerance)))};
+    const Precision precision{power_of_two_below(in_t(greatest_cell(field, options.tolerance)))};
     Isolation isolation =
         isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,
                            evaluation_budget, counts);

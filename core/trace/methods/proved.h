@@ -1,6 +1,7 @@
 // Ivory's own method: safe steps on tight inclusion functions, a proved sign change at the end.
 // Claims are of exact arithmetic on the doubles of scene and ray. One ray: core/trace/isolate.h.
-// Bundles of them: packets in SIMD (core/trace/packet.h), and what these leave undecided ray by ray.
+// Bundles of them: packets in SIMD (core/trace/packet.h), and what these leave undecided ray by
+// ray.
 #pragma once
 
 #include "core/trace/methods/method.h"

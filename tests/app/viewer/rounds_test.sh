@@ -20,7 +20,7 @@ cp "$scene" again.ivory.json
         echo '{"widget": "threshold", "set": 0.4}'
         echo '{"widget": "add.circle"}'
         echo '{"widget": "element.width", "set": 0.3}'
-        echo '{"resize": "720x540"}'
+        echo '{"resize": "640x380"}'
         if ((round % 10 == 1)); then
             echo '{"wait": "final"}'
             echo "{\"screenshot\": \"edited-$round.png\", \"viewport\": true}"
@@ -31,7 +31,7 @@ cp "$scene" again.ivory.json
         echo '{"expect": {"undo": "", "dirty": false}}'
         echo '{"scale": 1.5}'
         echo '{"scale": 1}'
-        echo '{"resize": "800x600"}'
+        echo '{"resize": "700x420"}'
     done
     echo '{"drop": "scene.ivory.json"}'
     echo '{"wait": "final"}'
@@ -39,7 +39,7 @@ cp "$scene" again.ivory.json
     echo '{"save": "last.ivory.json"}'
 } >rounds.script
 
-if ! "$ivory" scene.ivory.json --headless --size 800x600 --threads 2 --script rounds.script 2>message; then
+if ! "$ivory" scene.ivory.json --headless --size 700x420 --threads 2 --script rounds.script 2>message; then
     cat message
     if [[ -z ${IVORY_REQUIRE_OPENGL-} ]] && grep -q "needs OpenGL in memory" message; then
         echo "SKIPPED: no OpenGL in memory"

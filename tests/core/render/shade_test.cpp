@@ -120,8 +120,8 @@ TEST(PrimaryDirections, AreThoseOfPrimaryRaysToTheBit) {
         primary_directions(view, width, height, 13, i.data(), j.data(), x.data(), y.data(),
                            z.data());
         for (std::size_t k = 0; k < 13; ++k) {
-            const Ray ray = primary_ray(view, width, height, static_cast<int>(i[k]),
-                                        static_cast<int>(j[k]));
+            const Ray ray =
+                primary_ray(view, width, height, static_cast<int>(i[k]), static_cast<int>(j[k]));
             ASSERT_EQ(ray.direction, (Vec3d{x[k], y[k], z[k]})) << i[k] << ", " << j[k];
         }
     }

@@ -57,9 +57,9 @@ struct Case {
 
 class PacketOfRays : public testing::TestWithParam<Case> {};
 
-// What packets decide by themselves is what one ray alone is answered: the same grid lines, or where
-// rounding hides a sign from the single ray, some between its own. Of some the reference says the
-// same. And what is decided of a ray does not depend on the others.
+// What packets decide by themselves is what one ray alone is answered: the same grid lines, or
+// where rounding hides a sign from the single ray, some between its own. Of some the reference says
+// the same. And what is decided of a ray does not depend on the others.
 TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     const Case& c = GetParam();
     const Proved proved;
@@ -114,8 +114,8 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                     if (random.below(200) != 0) continue;
                     Answer answer{found[k], {}};
                     if (alone.status == Status::hit) {
-                        answer.surface = proved.surface(field, list, rays->ray(k),
-                                                        midpoint(alone.t), {});
+                        answer.surface =
+                            proved.surface(field, list, rays->ray(k), midpoint(alone.t), {});
                     }
                     const reference::Verdict verdict =
                         check(exact, rays->ray(k), c.tolerance, answer);
@@ -136,7 +136,8 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, PacketOfRays,
-    testing::Values(Case{"few", {.elements = 4}, 1e-6, 0.5}, Case{"some", {.elements = 12}, 1e-9, 0.5},
+    testing::Values(Case{"few", {.elements = 4}, 1e-6, 0.5},
+                    Case{"some", {.elements = 12}, 1e-9, 0.5},
                     Case{"many", {.elements = 60}, 1e-6, 0.5},
                     Case{"coarse", {.elements = 8}, 0.1, 0.5},
                     Case{"fine", {.elements = 8}, 1e-12, 0.2},
