@@ -77,7 +77,7 @@ class RenderSession {
     RenderSession& operator=(const RenderSession&) = delete;
 
     // From now on this picture is wanted. Never waits. Refinement of the one before is cancelled at
-    // once (each worker ends after at most 16 pixels more); its first complete picture may still be
+    // once (each worker ends after at most one tile more); its first complete picture may still be
     // finished for a bounded time, or a drag over a heavy scene would show nothing.
     void show(PictureRequest request);
 

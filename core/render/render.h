@@ -71,7 +71,7 @@ class FrameJob {
     FrameJob(const FrameJob&) = delete;
     FrameJob& operator=(const FrameJob&) = delete;
 
-    // Returns at once; the workers end after at most 16 pixels more each.
+    // Returns at once; the workers end after at most one tile more each.
     void cancel() noexcept;
 
     // Whether all workers have ended. Never waits.

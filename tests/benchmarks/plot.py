@@ -155,7 +155,7 @@ def differences(folder, table):
 
 
 def chart(folder, table, peers, name="chart"):
-    """The README's: greatest error over time, scenes side by side."""
+    """Greatest error over time, scenes side by side."""
     scenes = list(dict.fromkeys(row["scene"] for row in table))[:3]
     figure, axes = plt.subplots(1, len(scenes), squeeze=False, figsize=(3.6 * len(scenes), 3.3),
                                 sharey=True)
