@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/document/tidy.h"
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 #include "core/scene/error.h"
 #include "core/scene/text.h"
 

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 #include "core/scene/scene_fault.h"
 
 namespace ivory {

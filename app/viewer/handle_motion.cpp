@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "app/document/tidy.h"
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 
 namespace ivory {
 

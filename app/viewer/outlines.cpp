@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "core/field/kernel.h"
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 
 namespace ivory {
 

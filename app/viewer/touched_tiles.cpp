@@ -7,7 +7,7 @@
 #include <span>
 #include <variant>
 
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 #include "core/render/tiles.h"
 
 namespace ivory {

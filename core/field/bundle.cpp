@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/field/kernel.h"
+#include "core/math/direction.h"
 #include "core/math/offset.h"
 
 namespace ivory {
@@ -145,11 +146,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
             // A segment as short as that counts as its end a; `etas` adds its length.
             e.extra = e.length > 1e-40 ? 1 / square : 0;
         } else if (field.shape[i] == Shape::circle) {
-            const Vec3d n = field.b(i);
-            const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-            e.m = {n.x / largest, n.y / largest, n.z / largest};
-            const double norm = std::sqrt(dot(e.m, e.m));
-            e.m = {e.m.x / norm, e.m.y / norm, e.m.z / norm};
+            e.m = ivory::unit(field.b(i));  // not the member
             e.extra = field.radius[i];
         }
         e.width = field.width[i];

@@ -104,8 +104,7 @@ class BundleField {
     }
 
     [[nodiscard]] double unit() const { return unit_; }
-    // T and all strengths are scaled by this power of two.
-    [[nodiscard]] double scale() const { return scale_; }
+    // T, scaled by the power of two that all strengths are scaled by.
     [[nodiscard]] double threshold() const { return threshold_; }
 
   private:

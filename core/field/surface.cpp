@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/field/kernel.h"
+#include "core/math/direction.h"
 #include "core/math/offset.h"
 
 namespace ivory {
@@ -29,10 +30,7 @@ Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
         return {dot(away, away), away};
     }
     // (rho - r)^2 + h^2 with the axis n; half its gradient is (rho - r) across / rho + h n.
-    Vec3d n = field.b(i);
-    const double largest = std::fmax(std::abs(n.x), std::fmax(std::abs(n.y), std::abs(n.z)));
-    n = scaled(n, largest);
-    n = scaled(n, std::sqrt(dot(n, n)));
+    const Vec3d n = unit(field.b(i));
     const double r = field.radius[i] / width;
     const double h = dot(v, n);
     const Vec3d across = v - h * n;

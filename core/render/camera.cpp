@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_fault.h"
 

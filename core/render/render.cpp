@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/render/camera_lanes.h"
 #include "core/render/shade_lanes.h"
 
 namespace ivory {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/render/direction.h"
+#include "core/math/direction.h"
 #include "core/render/shade_lanes.h"
 
 namespace ivory {

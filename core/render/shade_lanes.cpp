@@ -1,8 +1,7 @@
 #include "core/render/shade_lanes.h"
 
-// As in core/trace/packet_steps.cpp.
-#define HWY_DISABLED_TARGETS \
-    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "core/math/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/render/shade_lanes.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
@@ -124,46 +123,9 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
     }
 }
 
-void directions(const View& view, int width, int height, std::size_t count, const double* i,
-                const double* j, double* dx, double* dy, double* dz) {
-    const D d;
-    const std::size_t N = hn::Lanes(d);
-    const V half = hn::Set(d, 0.5), one = hn::Set(d, 1.0), two = hn::Set(d, 2.0);
-    const V columns = hn::Set(d, static_cast<double>(width));
-    const V rows = hn::Set(d, static_cast<double>(height));
-    const V s = hn::Set(d, view.s);
-    for (std::size_t k = 0; k < count; k += N) {
-        const V u = hn::Div(
-            hn::Mul(
-                hn::Mul(hn::Sub(hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, i + k), half)), columns),
-                                one),
-                        s),
-                columns),
-            rows);
-        const V v = hn::Mul(
-            hn::Sub(one, hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, j + k), half)), rows)), s);
-        const auto component = [&](double forward, double right, double top) HWY_ATTR {
-            return hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
-                           hn::Mul(v, hn::Set(d, top)));
-        };
-        const Vec3v p{component(view.forward.x, view.right.x, view.top.x),
-                      component(view.forward.y, view.right.y, view.top.y),
-                      component(view.forward.z, view.right.z, view.top.z)};
-        const V norm = hn::Sqrt(dot(p, p));
-        hn::StoreU(hn::Div(p.x, norm), d, dx + k);
-        hn::StoreU(hn::Div(p.y, norm), d, dy + k);
-        hn::StoreU(hn::Div(p.z, norm), d, dz + k);
-    }
-}
-
 }  // namespace
 
 void shade_of_target(const Lighting& lighting, ShadingLanes& lanes) { shade(lighting, lanes); }
-
-void directions_of_target(const View& view, int width, int height, std::size_t count,
-                          const double* i, const double* j, double* dx, double* dy, double* dz) {
-    directions(view, width, height, count, i, j, dx, dy, dz);
-}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace ivory
@@ -173,15 +135,9 @@ HWY_AFTER_NAMESPACE();
 namespace ivory {
 
 HWY_EXPORT(shade_of_target);
-HWY_EXPORT(directions_of_target);
 
 void shade_lanes(const Lighting& lighting, ShadingLanes& lanes) {
     HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, lanes);
-}
-
-void primary_directions(const View& view, int width, int height, std::size_t count, const double* i,
-                        const double* j, double* dx, double* dy, double* dz) {
-    HWY_DYNAMIC_DISPATCH(directions_of_target)(view, width, height, count, i, j, dx, dy, dz);
 }
 
 }  // namespace ivory

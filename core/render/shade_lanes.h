@@ -1,11 +1,10 @@
-// The arithmetic of shade.h, and the directions of primary rays, for many pixels at a time in SIMD.
+// The arithmetic of shade.h for many pixels at a time in SIMD.
 // Nothing is fused: every instruction set gives the same doubles.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "core/render/camera.h"
 #include "core/render/shade.h"
 
 namespace ivory {
@@ -35,10 +34,5 @@ struct ShadingLanes {
 
 // r, g, b: from the surface's colour to the linear light that reaches the eye.
 void shade_lanes(const Lighting& lighting, ShadingLanes& lanes);
-
-// primary_ray(view, width, height, i[k], j[k]).direction for k < count, to the bit. The arrays have
-// room for the next multiple of 8.
-void primary_directions(const View& view, int width, int height, std::size_t count, const double* i,
-                        const double* j, double* dx, double* dy, double* dz);
 
 }  // namespace ivory

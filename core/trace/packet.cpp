@@ -30,6 +30,24 @@ void PacketTracer::take(const RayBundle& rays) {
     std::copy_n(rays.dz.begin(), rays.count, lanes_.dz.begin());
 }
 
+// Of the lanes whose m lies in the window, below `limit`.
+template <class Midpoint>
+void PacketTracer::surface_in(const Window& window, const Field& field, double limit,
+                              std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of) {
+    index_.clear();
+    t_.clear();
+    for (std::size_t k = 0; k < lanes_.count; ++k) {
+        const double m = midpoint_of(k);
+        if (!(m >= window.begin && m < window.end && m < limit)) continue;
+        index_.push_back(static_cast<std::uint32_t>(k));
+        t_.push_back(m);
+    }
+    if (index_.empty()) return;
+    points_.resize(index_.size());
+    packet_steps().surface(window, field, lanes_, index_, t_.data(), points_.data());
+    for (std::size_t k = 0; k < index_.size(); ++k) surfaces[index_[k]] = points_[k];
+}
+
 void PacketTracer::isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                            const Settings& settings, std::span<Isolation> isolations,
                            std::span<SurfacePoint> surfaces, Counts& counts) {
@@ -43,7 +61,7 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     take(rays);
     steps.prepare(lanes_, rays.bundle.axis);
     const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
-    const double limit = surfaces.empty() ? 0 : exact_limit(field, rays.bundle);
+    const double limit = exact_limit(field, rays.bundle);
     const auto begin = lanes_.state.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(rays.count);
     bundle_field_.for_windows(
@@ -60,19 +78,14 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             counts.evaluations += walked + enclosed;
             counts.element_evaluations +=
                 walked * window.coarse.size() + enclosed * window.fine.size();
-            index_.clear();
-            t_.clear();
-            bool more = false;
-            for (std::size_t k = 0; k < rays.count; ++k) {
-                more = more || lanes_.state[k] == Lanes::walking;
-                if (lanes_.state[k] != Lanes::hit) continue;
-                const double m = midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]));
-                if (!(m >= window.begin && m < window.end && m < limit)) continue;
-                index_.push_back(static_cast<std::uint32_t>(k));
-                t_.push_back(m);
+            if (!surfaces.empty()) {
+                surface_in(window, field, limit, surfaces, [&](std::size_t k) {
+                    return lanes_.state[k] == Lanes::hit
+                               ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
+                               : nan;
+                });
             }
-            surface_in(window, field, surfaces);
-            return more;
+            return std::find(begin, end, std::int32_t{Lanes::walking}) != end;
         });
     for (std::size_t k = 0; k < rays.count; ++k) {
         switch (lanes_.state[k]) {
@@ -97,32 +110,15 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
     if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
     take(rays);
     const double limit = exact_limit(field, rays.bundle);
-    const auto in = [&](double t0, double t1) {
-        return [=](double t) { return t >= t0 && t < t1 && t < limit; };
-    };
     bundle_field_.for_windows(
-        [&](double t0, double t1) { return std::any_of(m.begin(), m.end(), in(t0, t1)); },
+        [&](double t0, double t1) {
+            return std::any_of(m.begin(), m.end(), [=](double t) { return t >= t0 && t < t1; });
+        },
         std::numeric_limits<int>::max(),
         [&](const Window& window) {
-            index_.clear();
-            t_.clear();
-            for (std::size_t k = 0; k < rays.count; ++k) {
-                if (!in(window.begin, window.end)(m[k])) continue;
-                index_.push_back(static_cast<std::uint32_t>(k));
-                t_.push_back(m[k]);
-            }
-            surface_in(window, field, surfaces);
+            surface_in(window, field, limit, surfaces, [&](std::size_t k) { return m[k]; });
             return true;
         });
-}
-
-// Of the lanes index_ at t_.
-void PacketTracer::surface_in(const Window& window, const Field& field,
-                              std::span<SurfacePoint> surfaces) {
-    if (index_.empty()) return;
-    points_.resize(index_.size());
-    packet_steps().surface(window, field, lanes_, index_, t_.data(), points_.data());
-    for (std::size_t k = 0; k < index_.size(); ++k) surfaces[index_[k]] = points_[k];
 }
 
 std::string_view packet_target() {

@@ -44,11 +44,13 @@ class PacketTracer {
 
   private:
     void take(const RayBundle& rays);
-    void surface_in(const Window& window, const Field& field, std::span<SurfacePoint> surfaces);
+    template <class Midpoint>
+    void surface_in(const Window& window, const Field& field, double limit,
+                    std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of);
 
     BundleField bundle_field_;
     Lanes lanes_;
-    std::vector<std::uint32_t> index_;  // of lanes in a window, and their t
+    std::vector<std::uint32_t> index_;  // of lanes in a window, their t and what is found there
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;
 };

@@ -4,11 +4,8 @@
 #include <limits>
 
 #include "core/interval/exp.h"
+#include "core/math/instruction_sets.h"
 
-// Vectors without a fixed length are no members of structures; the others are of no use beside
-// SSE2, SSE4, AVX2 and AVX-512.
-#define HWY_DISABLED_TARGETS \
-    (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
@@ -563,10 +560,7 @@ namespace ivory {
 
 HWY_EXPORT(steps_of_target);
 
-const PacketSteps& packet_steps() {
-    static const PacketSteps& steps = HWY_DYNAMIC_DISPATCH(steps_of_target)();
-    return steps;
-}
+const PacketSteps& packet_steps() { return HWY_DYNAMIC_DISPATCH(steps_of_target)(); }
 
 }  // namespace ivory
 #endif

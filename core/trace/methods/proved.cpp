@@ -6,8 +6,8 @@
 
 #include "core/field/inclusion.h"
 #include "core/field/surface.h"
-#include "core/trace/clip.h"
 #include "core/trace/isolate.h"
+#include "core/trace/methods/search.h"
 #include "core/trace/packet.h"
 
 namespace ivory {
@@ -35,26 +35,23 @@ double greatest_cell(const Field& field, double tolerance) {
 
 Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
                           const MethodOptions& options, Counts& counts) const {
-    const Isolation miss{Status::miss, Interval<double>::empty_set()};
-    if (list.certainly_empty) return miss;
-
     // 1. The ray, scaled, as far as it is in the bounding box.
-    const ScaledRay scaled_ray = scaled(ray);
-    const Interval<double> span = clip(scaled_ray, field.box);
-    if (is_empty(span)) return miss;
-    if (!(span.hi < 1e100)) return {Status::unresolved, {0.0, infinity<double>}};
+    const Search search = begin_search(field, list, ray, options);
+    if (search.over()) return search.answer;
+    const ScaledRay& scaled_ray = search.ray;
+    const Interval<double>& span = search.span;
 
     // 2. The field along it. A miss already where the peaks do not add up to T.
     thread_local FieldAlongRay along;
     along.build(field, list, scaled_ray.origin, scaled_ray.direction, span);
     ++counts.evaluations;
     counts.element_evaluations += list.elements.size();
-    if (along.certainly_outside()) return miss;
+    if (along.certainly_outside()) return search.answer;
 
     // 3. The first root.
-    const double speed =
-        std::sqrt(dot(scaled_ray.direction, scaled_ray.direction)) * (1 + 8 * unit_roundoff);
-    const auto in_t = [&](double length) { return length / speed * (1 - 8 * unit_roundoff); };
+    const auto in_t = [&](double length) {
+        return length / search.speed * (1 - 8 * unit_roundoff);
+    };
     const Precision precision{power_of_two_below(in_t(greatest_cell(field, options.tolerance)))};
     Isolation isolation =
         isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,

@@ -10,7 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "core/render/direction.h"
+#include "core/math/direction.h"
+#include "core/render/camera_lanes.h"
 #include "core/scene/error.h"
 #include "tests/error_line.h"
 
@@ -190,6 +191,24 @@ TEST(Camera, TheScenesOwnCameraIsTaken) {
     EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), *scene.camera);
     scene.camera.reset();
     EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), default_camera({}, 2));
+}
+
+TEST(PrimaryDirections, AreThoseOfPrimaryRaysToTheBit) {
+    const View view = make_view({{3.1, -2.7, 5.3}, {0.1, 0.2, -0.3}, {0.2, 1, 0.1}, 47.3});
+    constexpr int width = 131, height = 77;
+    std::array<double, 16> i{}, j{}, x{}, y{}, z{};
+    for (int n = 0; n < width * height; ++n) {
+        i[static_cast<std::size_t>(n % 13)] = n % width;
+        j[static_cast<std::size_t>(n % 13)] = n / width;
+        if (n % 13 != 12) continue;
+        primary_directions(view, width, height, 13, i.data(), j.data(), x.data(), y.data(),
+                           z.data());
+        for (std::size_t k = 0; k < 13; ++k) {
+            const Ray ray =
+                primary_ray(view, width, height, static_cast<int>(i[k]), static_cast<int>(j[k]));
+            ASSERT_EQ(ray.direction, (Vec3d{x[k], y[k], z[k]})) << i[k] << ", " << j[k];
+        }
+    }
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // Packets against single rays and against the reference of 256 bits.
 #include "core/trace/packet.h"
 
+#include "core/math/instruction_sets.h"
+
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +12,9 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "core/math/direction.h"
 #include "core/trace/methods/proved.h"
 #include "tests/reference/verdict.h"
 #include "tests/tools/nasty_rays.h"
@@ -20,11 +25,6 @@ namespace {
 
 using tools::Random;
 using tools::RayKind;
-
-Vec3d unit(const Vec3d& v) {
-    const double length = std::hypot(v.x, v.y, v.z);
-    return {v.x / length, v.y / length, v.z / length};
-}
 
 // `count` rays around one, at most about `spread` away from it.
 std::unique_ptr<RayBundle> bundle_around(const Ray& ray, double spread, std::size_t count,
@@ -221,6 +221,47 @@ TEST(Packet, WorkIsBounded) {
     Counts counts;
     packets.isolate(field, all_elements(field), *rays, {1e-6, 0.5 * 0x1p-20}, found, {}, counts);
     EXPECT_LT(counts.evaluations, 256u * 60 * 1024);
+}
+
+// What the contract lets differ between instruction sets, on all that this machine has: a hit is
+// never a miss, and enclosures overlap.
+TEST(Packet, InstructionSetsAgree) {
+    constexpr std::size_t count = 200;
+    const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+    int hits = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Scene scene = tools::random_scene({.elements = 12}, seed);
+        const Field field = compile(scene);
+        const auto toward = nasty_rays(scene, RayKind::random, 1, seed).front();
+        Random random(seed);
+        const auto rays = bundle_around(toward, 0.3, count, random);
+        std::vector<std::array<Isolation, RayBundle::capacity>> found(targets.size());
+        for (std::size_t n = 0; n < targets.size(); ++n) {
+            hwy::SetSupportedTargetsForTest(targets[n]);
+            hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+            PacketTracer packets;
+            Counts counts;
+            packets.isolate(field, all_elements(field), *rays,
+                            {1e-6, 0.5 * 0x1p-20 * field.least_width}, found[n], {}, counts);
+        }
+        hwy::SetSupportedTargetsForTest(0);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        for (std::size_t k = 0; k < count; ++k) {
+            const Isolation& first = found.front()[k];
+            hits += first.status == Status::hit;
+            for (const auto& other : found) {
+                const Status a = first.status, b = other[k].status;
+                EXPECT_FALSE(a == Status::hit && b == Status::miss) << k;
+                EXPECT_FALSE(a == Status::miss && b == Status::hit) << k;
+                if (a != Status::hit || b != Status::hit) continue;
+                EXPECT_LE(first.t.lo, other[k].t.hi);
+                EXPECT_LE(other[k].t.lo, first.t.hi);
+            }
+        }
+    }
+    EXPECT_GT(hits, 0);
+    std::printf("%zu instruction sets, %d hits\n", targets.size(), hits);
 }
 
 }  // namespace
