@@ -1,0 +1,105 @@
+// The bounds of a window against the field itself.
+#include "core/field/bundle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/field/surface.h"
+#include "core/math/direction.h"
+#include "tests/tools/random_scene.h"
+
+namespace ivory {
+namespace {
+
+using tools::Random;
+
+Vec3d place(const Vec3d& origin, double t, const Vec3d& d) { return origin + t * d; }
+
+// Calls visit(field, window, scale, ray's direction) for windows of random scenes, with several
+// rays of the bundle each; all lengths are near 1, so that plain double serves as truth.
+template <class Visit>
+void for_random_windows(const Visit& visit) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const Scene scene = tools::random_scene({.elements = 10}, seed);
+        const Field field = compile(scene);
+        const Vec3d origin = 4.0 * unit(random.in_cube(1));
+        const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.02};
+        BundleField along;
+        ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
+        const double scale = along.threshold() / field.threshold;
+        const auto every = [](double, double) { return true; };
+        along.for_windows(every, std::numeric_limits<int>::max(), [&](const Window& window) {
+            for (int n = 0; n < 4; ++n) {
+                visit(field, bundle, window, scale,
+                      unit(bundle.axis + 0.019 * random.uniform(0, 1) * unit(random.in_cube(1))),
+                      random);
+            }
+            return true;
+        });
+    }
+}
+
+// f <= (the sum over the window's entries) + above, and likewise below: what is left out is not
+// forgotten.
+TEST(Bundle, WhatIsLeftOutStaysInAsAnInterval) {
+    int left_out = 0;
+    double share = 0;  // of the bounds, used
+    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window,
+                           double scale, const Vec3d& d, Random& random) {
+        const Vec3d p = place(bundle.origin, random.uniform(window.begin, window.end), d);
+        double above = 0, below = 0;
+        for (std::uint32_t i = 0; i < field.size(); ++i) {
+            const auto& kept = window.fine_element;
+            if (std::find(kept.begin(), kept.end(), i) != kept.end()) continue;
+            const double value = element_value(field, i, p) * scale;
+            (value > 0 ? above : below) += std::abs(value);
+            left_out += value != 0;
+        }
+        ASSERT_LE(above, window.fine_bounds.above);
+        ASSERT_LE(below, window.fine_bounds.below);
+        share =
+            std::max({share, above / window.fine_bounds.above, below / window.fine_bounds.below});
+    });
+    EXPECT_GT(left_out, 100);
+    EXPECT_GT(share, 0.1);
+}
+
+// Between two places of a window without kinks f' rises by `rise` times their distance at the
+// most, and falls by `fall` times it.
+TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
+    int windows = 0;
+    double share = 0;
+    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window,
+                           double scale, const Vec3d& d, Random& random) {
+        if (std::any_of(window.fine.begin(), window.fine.end(),
+                        [](const BundleEntry<double>& entry) { return entry.slope == 0; })) {
+            return;
+        }
+        const double a = random.uniform(window.begin, window.end);
+        const double b = random.uniform(window.begin, window.end);
+        const double t0 = std::min(a, b), t1 = std::max(a, b);
+        const auto slope = [&](double t) {
+            return scale * dot(sample(field, place(bundle.origin, t, d)).gradient, d);
+        };
+        const double change = slope(t1) - slope(t0);
+        // What is left out has a slope of its own, below 1e-9 here.
+        ASSERT_LE(change, window.rise * (t1 - t0) + 1e-9);
+        ASSERT_GE(change, -window.fall * (t1 - t0) - 1e-9);
+        ++windows;
+        if (t1 - t0 < 1e-3) return;
+        share = std::max(
+            {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
+    });
+    EXPECT_GT(windows, 500);
+    EXPECT_GT(share, 0.5);
+}
+
+}  // namespace
+}  // namespace ivory
