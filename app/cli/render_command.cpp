@@ -77,12 +77,8 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
                       const std::string& label, Progress& progress) {
     const Clock::time_point start = Clock::now();
     Rendering rendering;
-    Picture& picture = rendering.picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view = make_view(camera_of(scene, *picture.field, arguments.width, arguments.height));
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = arguments.work.method;
-    picture.options = arguments.work.options;
+    rendering.picture = make_picture(scene, arguments.width, arguments.height,
+                                     *arguments.work.method, arguments.work.options);
     rendering.seconds.compile = seconds_since(start);
 
     const Clock::time_point compiled = Clock::now();
@@ -91,7 +87,7 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
     JobSettings settings;
     settings.threads = arguments.work.threads;
     settings.task = task;
-    FrameJob job(picture, *rendering.canvas, settings);
+    FrameJob job(rendering.picture, *rendering.canvas, settings);
     while (!job.wait_for(std::chrono::milliseconds(50))) {
         stop_if_interrupted();  // the job cancels itself on the way out
         progress.show(label + std::to_string(static_cast<int>(100 * job.progress())) + " %");

@@ -26,6 +26,11 @@ struct Picture {
     MethodOptions options;
 };
 
+// The picture of a scene through its camera, or the default one (core/render/camera.h), in that
+// many pixels. Throws Error as make_view and default_camera do.
+[[nodiscard]] Picture make_picture(const Scene& scene, int width, int height, const Method& method,
+                                   const MethodOptions& options);
+
 // A tile as the last job left it.
 struct TileState {
     // 0: nothing traced yet; n: the pixels whose column and row are multiples of n are traced, so

@@ -56,14 +56,7 @@ struct Options {
 
 Picture picture_of(const Scene& scene, const Options& options, const Method* method,
                    double tolerance) {
-    Picture picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view =
-        make_view(camera_of(scene, *picture.field, options.width, options.height));
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = method;
-    picture.options.tolerance = tolerance;
-    return picture;
+    return make_picture(scene, options.width, options.height, *method, {.tolerance = tolerance});
 }
 
 // A picture within the limit of time; its report is not complete where it was stopped.

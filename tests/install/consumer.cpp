@@ -44,9 +44,8 @@ int main() {
         return fail("the hit is in the wrong place");
 
     constexpr int size = 64;
-    const ivory::View view = ivory::make_view(ivory::camera_of(scene, *field, size, size));
     ivory::Canvas canvas(size, size, false);
-    ivory::render({field, view, ivory::make_lighting(scene, view), proved, {}}, canvas, {});
+    ivory::render(ivory::make_picture(scene, size, size, *proved, {}), canvas, {});
     if (canvas.frame.status[canvas.frame.at(size / 2, size / 2)] != ivory::Status::hit)
         return fail("the picture is empty");
     if (!ivory::png_bytes(canvas.frame).starts_with("\x89PNG")) return fail("this is no PNG");

@@ -22,6 +22,7 @@
 #include "core/scene/scene_json.h"
 #include "tests/reference/verdict.h"
 #include "tests/tools/answer_lines.h"
+#include "tests/tools/run_tool.h"
 
 namespace {
 
@@ -271,10 +272,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "check_answers: %s\n", error.what());
-        return 1;
-    }
+    return ivory::tools::run_tool("check_answers", run, argc, argv);
 }

@@ -9,6 +9,7 @@
 
 #include "core/scene/scene_json.h"
 #include "tests/tools/nasty_rays.h"
+#include "tests/tools/run_tool.h"
 
 namespace {
 
@@ -46,10 +47,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "make_rays: %s\n", error.what());
-        return 1;
-    }
+    return ivory::tools::run_tool("make_rays", run, argc, argv);
 }

@@ -5,6 +5,7 @@
 
 #include "core/scene/scene_json.h"
 #include "tests/tools/random_scene.h"
+#include "tests/tools/run_tool.h"
 
 namespace {
 
@@ -33,10 +34,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "make_scene: %s\n", error.what());
-        return 1;
-    }
+    return ivory::tools::run_tool("make_scene", run, argc, argv);
 }

@@ -21,6 +21,7 @@
 #include "core/render/canvas.h"
 #include "core/render/render.h"
 #include "tests/tools/random_scene.h"
+#include "tests/tools/run_tool.h"
 
 namespace {
 
@@ -161,12 +162,8 @@ class Bench {
     // From the order to stop until all workers have.
     std::vector<double> time_cancels() {
         const Scene scene = viewer_.state().scene_with_view();
-        Picture picture;
-        picture.field = std::make_shared<const Field>(compile(scene));
-        picture.view = make_view(*scene.camera);
-        picture.lighting = make_lighting(scene, picture.view);
-        picture.method = methods().front();
-        picture.options.tolerance = 1e-6;
+        const Picture picture =
+            make_picture(scene, size_.width, size_.height, *methods().front(), {.tolerance = 1e-6});
         std::vector<double> times;
         for (int i = 0; i < options_.edits; ++i) {
             Canvas canvas(size_.width, size_.height, false);
@@ -216,11 +213,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "measure_edits: %s\n", error.what());
-        return 1;
-    }
-}
+int main(int argc, char** argv) { return ivory::tools::run_tool("measure_edits", run, argc, argv); }

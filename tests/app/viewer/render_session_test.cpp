@@ -58,12 +58,10 @@ SceneValue with_left_blob_at(double x) {
 
 // What `ivory render` draws.
 std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize picture_size = size) {
-    Picture picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view = make_view(c);
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = methods().front();
-    picture.options.tolerance = tolerance;
+    Scene seen = scene;
+    seen.camera = c;
+    const Picture picture = make_picture(seen, picture_size.width, picture_size.height,
+                                         *methods().front(), {.tolerance = tolerance});
     Canvas canvas(picture_size.width, picture_size.height, false);
     JobSettings settings;
     settings.threads = 2;

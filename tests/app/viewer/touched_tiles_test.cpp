@@ -41,12 +41,10 @@ Scene three_elements() {
 }
 
 std::vector<Rgba8> rendered(const Scene& scene) {
-    Picture picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view = make_view(camera());
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = methods().front();
-    picture.options.tolerance = 1e-6;
+    Scene seen = scene;
+    seen.camera = camera();
+    const Picture picture =
+        make_picture(seen, size.width, size.height, *methods().front(), {.tolerance = 1e-6});
     Canvas canvas(size.width, size.height, false);
     JobSettings settings;
     settings.threads = 2;

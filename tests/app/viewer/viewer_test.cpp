@@ -76,12 +76,8 @@ std::vector<Rgba8> colors_of(const Frame& frame, const WindowRect& rect) {
 }
 
 std::vector<Rgba8> rendered(const Scene& scene, WindowSize size) {
-    Picture picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view = make_view(*scene.camera);
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = methods().front();
-    picture.options.tolerance = 1e-6;
+    const Picture picture =
+        make_picture(scene, size.width, size.height, *methods().front(), {.tolerance = 1e-6});
     Canvas canvas(size.width, size.height, false);
     JobSettings settings;
     settings.threads = 2;

@@ -53,13 +53,7 @@ constexpr int frame_width = 150,
 
 Picture picture_of(const Scene& scene, const char* method = "proved", int w = frame_width,
                    int h = frame_height) {
-    Picture picture;
-    picture.field = std::make_shared<const Field>(compile(scene));
-    picture.view = make_view(camera_of(scene, *picture.field, w, h));
-    picture.lighting = make_lighting(scene, picture.view);
-    picture.method = find_method(method);
-    picture.options.tolerance = 1e-6;
-    return picture;
+    return make_picture(scene, w, h, *find_method(method), {.tolerance = 1e-6});
 }
 
 // All that a frame holds, miss by miss and bit by bit.
