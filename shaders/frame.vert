@@ -1,6 +1,11 @@
 #version 330 core
-// One triangle that covers the viewport; what sticks out is clipped.
+// Two triangles, a strip, that cover the picture.
+uniform vec2 size;  // of the picture in pixels
+
+out vec2 place;  // in the picture, in pixels from its top left
+
 void main() {
-    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-    gl_Position = vec4(corner, 0.0, 1.0);
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    place = corner * size;
+    gl_Position = vec4(2.0 * corner.x - 1.0, 1.0 - 2.0 * corner.y, 0.0, 1.0);
 }

@@ -87,7 +87,6 @@ using GlBytes = std::ptrdiff_t;
        GlEnum type, const void* pixels))                                                             \
     X(void, Uniform1i, (GlInt location, GlInt value))                                                \
     X(void, Uniform2f, (GlInt location, GlFloat x, GlFloat y))                                       \
-    X(void, Uniform4f, (GlInt location, GlFloat x, GlFloat y, GlFloat z, GlFloat w))                 \
     X(void, UseProgram, (GlUint program))                                                            \
     X(void, VertexAttribPointer,                                                                     \
       (GlUint index, GlInt size, GlEnum type, GlBool normalized, GlSize stride, const void* pointer)) \
@@ -107,7 +106,7 @@ struct Gl {
 
 namespace gl {
 
-inline constexpr GlEnum no_error = 0, triangles = 0x0004;
+inline constexpr GlEnum no_error = 0, triangles = 0x0004, triangle_strip = 0x0005;
 inline constexpr GlBits color_buffer_bit = 0x4000;
 inline constexpr GlEnum src_alpha = 0x0302, one_minus_src_alpha = 0x0303, one = 1, func_add = 0x8006;
 inline constexpr GlEnum blend = 0x0BE2, cull_face = 0x0B44, depth_test = 0x0B71, stencil_test = 0x0B90,

@@ -13,8 +13,6 @@ FrameTexture::FrameTexture(const Gl& gl) : gl_(gl) {
                             embedded_file("shaders/frame.frag").data());
     picture_uniform_ = gl.GetUniformLocation(program_, "picture");
     size_uniform_ = gl.GetUniformLocation(program_, "size");
-    top_left_uniform_ = gl.GetUniformLocation(program_, "top_left");
-    surroundings_uniform_ = gl.GetUniformLocation(program_, "surroundings");
     gl.GenVertexArrays(1, &array_);  // empty, but core OpenGL draws nothing without one
     gl.GenTextures(1, &texture_);
     gl.BindTexture(gl::texture_2d, texture_);
@@ -48,26 +46,29 @@ void FrameTexture::update(const ShownPicture& picture, const PictureChange& chan
 
 void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer,
                         Rgba8 surroundings) const {
-    gl_.Disable(gl::blend);
-    gl_.Disable(gl::scissor_test);
+    gl_.Enable(gl::scissor_test);
     // OpenGL counts rows from below
-    gl_.Viewport(viewport.x, framebuffer.height - viewport.y - viewport.height, viewport.width,
-                 viewport.height);
+    gl_.Scissor(viewport.x, framebuffer.height - viewport.y - viewport.height, viewport.width,
+                viewport.height);
+    if (size_.width < viewport.width || size_.height < viewport.height) {
+        gl_.ClearColor(static_cast<float>(surroundings.r) / 255,
+                       static_cast<float>(surroundings.g) / 255,
+                       static_cast<float>(surroundings.b) / 255, 1);
+        gl_.Clear(gl::color_buffer_bit);
+    }
+    const int left = viewport.x + (viewport.width - size_.width) / 2;
+    const int top = viewport.y + (viewport.height - size_.height) / 2;
+    gl_.Viewport(left, framebuffer.height - top - size_.height, size_.width, size_.height);
+    gl_.Disable(gl::blend);
     gl_.UseProgram(program_);
     gl_.ActiveTexture(gl::texture0);
     gl_.BindTexture(gl::texture_2d, texture_);
     gl_.Uniform1i(picture_uniform_, 0);
-    const int left = viewport.x + (viewport.width - size_.width) / 2;
-    const int top = viewport.y + (viewport.height - size_.height) / 2;
     gl_.Uniform2f(size_uniform_, static_cast<float>(size_.width), static_cast<float>(size_.height));
-    gl_.Uniform2f(top_left_uniform_, static_cast<float>(left),
-                  static_cast<float>(framebuffer.height - top));
-    gl_.Uniform4f(surroundings_uniform_, static_cast<float>(surroundings.r) / 255,
-                  static_cast<float>(surroundings.g) / 255,
-                  static_cast<float>(surroundings.b) / 255, 1);
     gl_.BindVertexArray(array_);
-    gl_.DrawArrays(gl::triangles, 0, 3);
+    gl_.DrawArrays(gl::triangle_strip, 0, 4);  // nothing, where there is no picture yet
     gl_.BindVertexArray(0);
+    gl_.Disable(gl::scissor_test);
 }
 
 std::vector<PixelRect> rows_of_tiles(std::vector<PixelRect> tiles) {

@@ -25,8 +25,7 @@ class FrameTexture {
   private:
     const Gl& gl_;
     GlUint program_ = 0, array_ = 0, texture_ = 0;
-    GlInt picture_uniform_ = -1, size_uniform_ = -1, top_left_uniform_ = -1,
-          surroundings_uniform_ = -1;
+    GlInt picture_uniform_ = -1, size_uniform_ = -1;
     WindowSize size_;
 };
 

@@ -34,7 +34,7 @@ constexpr float behind_alpha = 0.5f, border_behind_alpha = 0.16f;
 constexpr double piece_pixels = 7;  // at scale 1: of a line between two looks at the depth
 constexpr int most_pieces = 96;
 // Beyond so many elements the lines of all would hide the picture, and take longer to draw than it.
-constexpr std::size_t most_borders = 150, most_lines = 3'000;
+constexpr std::size_t most_borders = 60, most_lines = 3'000;
 
 ImVec2 vec(WindowPoint p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
 

@@ -563,7 +563,8 @@ class RenderSession::Director {
             const Clock::time_point now = Clock::now();
             const bool is_better = !was_complete || (!was_fine && board_.fine());
             if (is_better && job_ != nullptr && enough()) job_->cancel();
-            wake = is_better || now - last_wake_ >= refinement_interval;
+            // of a picture that is about to be replaced, refinement is not worth a frame
+            wake = is_better || (!superseded_ && now - last_wake_ >= refinement_interval);
             if (wake) last_wake_ = now;
         }
         if (wake) settings_.wake();

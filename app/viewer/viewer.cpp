@@ -215,6 +215,7 @@ void Viewer::frame(const Input& input) {
     draw_panels(state);
     parts.frame_automatic_view();
     parts.mouse.update(state, input);
+    parts.ask_for_picture(input, start);  // the renderer begins while this frame is drawn
     if (!parts.overlay_hidden && state.skeleton_shown) {
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
         const WindowRect& viewport = state.viewport;
@@ -224,7 +225,6 @@ void Viewer::frame(const Input& input) {
         draw_overlay(state, parts.mouse, list);
         list.PopClipRect();
     }
-    parts.ask_for_picture(input, start);
     ImGui::Render();
     parts.draw(input);
     parts.fulfil_wishes(*this);
