@@ -36,6 +36,8 @@ using Complaints = std::vector<std::string>;
 
 bool is_header(const std::string& path) { return path.ends_with(".h"); }
 bool is_source(const std::string& path) { return path.ends_with(".cpp"); }
+// Included by sources alone, once for each instruction set.
+bool is_part_of_sources(const std::string& path) { return path.ends_with(".inl"); }
 
 const fs::path& root() {
     static const fs::path path = IVORY_SOURCE_DIR;
@@ -67,7 +69,7 @@ const Tree& source_tree() {
         Tree read;
         for (const char* folder : {"core", "app"})
             for (const std::string& path : files_under(folder))
-                if (is_header(path) || is_source(path)) {
+                if (is_header(path) || is_source(path) || is_part_of_sources(path)) {
                     std::ifstream text(root() / path);
                     read[path] = includes_in(text);
                 }

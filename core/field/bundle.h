@@ -25,8 +25,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/field/bundle_steps.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/interval/interval.h"
@@ -39,6 +41,15 @@ struct Bundle {
     Vec3d origin;
     Vec3d axis;
     double spread = 0;
+};
+
+// Some of a bundle's rays, which lie closer together, numbered as their owner likes; its own parts
+// are others of the same array. Windows on which much is to be done are made for each part alone.
+struct BundlePart {
+    Vec3d axis;
+    double spread = 0;
+    std::uint32_t first = 0, end = 0;                // rays
+    std::uint32_t first_part = 0, end_of_parts = 0;  // after this one in the array; none: equal
 };
 
 // One element as the inner loop wants it. away = p - c - lambda m for a segment (c its end a),
@@ -59,12 +70,10 @@ struct StageBounds {
     double slope = 0;             // |g' - computed|, g the sum over the fine entries
 };
 
-constexpr std::size_t bundle_groups = 9;  // shape * 3 + kernel
-
 // One window, ready for the inner loops. Entries are sorted by group.
 struct Window {
     double begin = 0, middle = 0, end = 0;  // t
-    Vec3d axis;                             // of the bundle
+    Vec3d axis;                             // of the bundle, or of the part it is made for
     float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
 
     // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per square of a scene
@@ -72,14 +81,16 @@ struct Window {
     double rise = 0, fall = 0;
 
     std::vector<BundleEntry<float>> coarse;  // p - c with p relative to the middle
-    std::array<std::uint32_t, bundle_groups> coarse_count{};
+    std::array<std::uint32_t, field_groups> coarse_count{};
     StageBounds coarse_bounds;  // per unit
     bool coarse_usable = false;
 
+    // Once `complete` has been called for this window:
     std::vector<BundleEntry<double>> fine;  // likewise, in scene units
-    std::array<std::uint32_t, bundle_groups> fine_count{};
+    std::array<std::uint32_t, field_groups> fine_count{};
     std::vector<std::uint32_t> fine_element;  // index into Field
     StageBounds fine_bounds;                  // per scene unit
+    bool fine_usable = false;
 };
 
 // The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
@@ -93,79 +104,77 @@ class BundleField {
     // The t outside of which every ray is outside of the field's box, and so f < 0; empty: a miss.
     [[nodiscard]] Interval<double> span() const { return span_; }
 
-    // Calls visit(window) for windows from front to back until it returns false; f < 0 certainly
-    // holds on the parts of span() between them. Which windows there are depends on field, list,
-    // bundle and tolerance alone. Those that wanted(begin, end) denies are passed over. When
-    // `budget` stretches of t have been bounded, one that is not `coarse_usable` is the last.
+    // Calls visit(window, part) for windows from front to back until it returns false; f < 0
+    // certainly holds on the parts of span() between them. parts[0] is the bundle. Which windows
+    // there are depends on field, list, parts and tolerance alone. Those that
+    // wanted(part, begin, end) denies are passed over. When `budget` stretches of t have been
+    // bounded, one that is not `coarse_usable` is the last.
     template <class Wanted, class Visit>
-    void for_windows(const Wanted& wanted, int budget, const Visit& visit) {
+    void for_windows(std::span<const BundlePart> parts, const Wanted& wanted, int budget,
+                     const Visit& visit) {
         left_ = budget;
-        if (!is_empty(span_)) descend(0, span_.lo, span_.hi, wanted, visit);
+        parts_ = parts;
+        if (!is_empty(span_)) descend(0, parts[0], span_.lo, span_.hi, wanted, visit);
     }
+
+    // The fine stage of the window that is being visited.
+    void complete(Window& window);
 
     [[nodiscard]] double unit() const { return unit_; }
     // T, scaled by the power of two that all strengths are scaled by.
     [[nodiscard]] double threshold() const { return threshold_; }
 
   private:
-    struct Element {
-        std::uint32_t index, group;
-        Vec3d c;                                 // point: position; segment: a; circle: centre
-        Vec3d from_origin;                       // c - o
-        Vec3d m;                                 // segment: b - a; circle: unit normal
-        double extra;                            // segment: 1 / |b - a|^2; circle: radius
-        double length;                           // of m, 0 for points and circles
-        double width, inverse_square, strength;  // strength scaled
-        double along, across_square;             // c - o split by the axis
-        double far;                              // >= |c - o| + length + radius
-    };
-    struct Active {
-        std::uint32_t element;
-        double least;    // lower bound of s
-        double most;     // upper bound of s
-        double peak;     // upper bound of k
-        double inverse;  // circle: upper bound of 1 / rho; < 0: rho may be 0
-    };
-    // The elements that matter on [begin, end], and what the others can add.
+    // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
-        std::vector<Active> active;
+        ActiveElements active;
         double rest_above = 0, rest_below = 0;
         double rise = 0, fall = 0;
         double kinks = 0;  // upper bound of the |f'| of kinked elements
     };
 
+    [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     // False: f < 0 on all of [t0, t1] for every ray.
-    bool bound(std::size_t depth, double t0, double t1);
+    bool bound(std::size_t depth, const BundlePart& part, double t0, double t1);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
-    void finish(std::size_t depth, double t0, double t1);
-    [[nodiscard]] double distance(const Element& e, double t) const;
-    void bend(const Element& e, Active& a, double t0, double t1, double& rise, double& fall) const;
+    [[nodiscard]] bool parts_differ(std::size_t depth, const BundlePart& part, double t0,
+                                    double t1) const;
+    void finish(std::size_t depth, const BundlePart& part, double t0, double t1);
 
     template <class Wanted, class Visit>
-    bool descend(std::size_t depth, double t0, double t1, const Wanted& wanted,
-                 const Visit& visit) {
+    bool descend(std::size_t depth, const BundlePart& part, double t0, double t1,
+                 const Wanted& wanted, const Visit& visit) {
         // Float cannot name the ends: what is bounded is a little longer.
         const double pad = 0x1p-20 * (t1 - t0);
-        if (!wanted(t0, t1)) return true;
+        if (!wanted(part, t0, t1)) return true;
         if (left_-- <= 0) {
             window_.coarse_usable = false;
-            visit(static_cast<const Window&>(window_));
+            visit(window_, part);
             return false;
         }
-        if (!bound(depth, t0 - pad, t1 + pad)) return true;
+        if (!bound(depth, part, t0 - pad, t1 + pad)) return true;
         const double middle = 0.5 * (t0 + t1);
         if (middle > t0 && middle < t1 && splits(depth, t0, t1)) {
-            return descend(depth + 1, t0, middle, wanted, visit) &&
-                   descend(depth + 1, middle, t1, wanted, visit);
+            return descend(depth + 1, part, t0, middle, wanted, visit) &&
+                   descend(depth + 1, part, middle, t1, wanted, visit);
         }
-        finish(depth, t0, t1);
-        return visit(static_cast<const Window&>(window_));
+        if (parts_differ(depth, part, t0, t1)) {
+            for (std::uint32_t k = part.first_part; k < part.end_of_parts; ++k) {
+                if (!descend(depth + 1, parts_[k], t0, t1, wanted, visit)) return false;
+            }
+            return true;
+        }
+        finish(depth, part, t0, t1);
+        return visit(window_, part);
     }
 
-    Bundle bundle_;
-    double spread_ = 0;
-    std::vector<Element> elements_;
+    const Field* field_ = nullptr;
+    Vec3d origin_;
+    std::span<const BundlePart> parts_;
+    ActiveElements list_;
     std::vector<Bounded> bounded_by_depth_;
+    std::size_t finished_depth_ = 0;
+    Stretch finished_;  // of the window
     Window window_;
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;

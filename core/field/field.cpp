@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/field/bounding_box.h"
+#include "core/math/direction.h"
 
 namespace ivory {
 namespace {
@@ -25,43 +26,61 @@ bool is_compact(const Field& field) {
     return true;
 }
 
+void add(Field& field, const Element& element, std::size_t source) {
+    Vec3d a, b, m;
+    double radius = 0, length = 0, extra = 0;
+    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
+        a = point->position;
+    } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+        a = segment->a;
+        b = segment->b;
+        m = b - a;
+        const double square = dot(m, m);
+        length = std::sqrt(square);
+        extra = length > 1e-40 ? 1 / square : 0;
+    } else {
+        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
+        a = circle.center;
+        b = circle.normal;
+        m = unit(b);
+        radius = extra = circle.radius;
+    }
+    field.shape.push_back(static_cast<Shape>(element.skeleton.index()));
+    field.kernel.push_back(element.kernel);
+    field.strength.push_back(element.strength);
+    field.width.push_back(element.width);
+    field.ax.push_back(a.x);
+    field.ay.push_back(a.y);
+    field.az.push_back(a.z);
+    field.bx.push_back(b.x);
+    field.by.push_back(b.y);
+    field.bz.push_back(b.z);
+    field.radius.push_back(radius);
+    field.color.push_back(element.color);
+    field.source.push_back(static_cast<std::uint32_t>(source));
+    field.mx.push_back(m.x);
+    field.my.push_back(m.y);
+    field.mz.push_back(m.z);
+    field.extra.push_back(extra);
+    field.length.push_back(length);
+    field.inverse_width.push_back(1 / element.width);
+    field.inverse_square.push_back(1 / (element.width * element.width));
+}
+
 }  // namespace
 
 Field compile(const Scene& scene) {
     Field field;
     field.threshold = scene.threshold;
-    for (std::size_t shape = 0; shape < std::variant_size_v<Skeleton>; ++shape) {
+    for (std::size_t group = 0; group < field_groups; ++group) {
+        field.first[group] = static_cast<std::uint32_t>(field.size());
         for (std::size_t i = 0; i < scene.elements.size(); ++i) {
             const Element& element = scene.elements[i];
-            if (!element.visible || element.skeleton.index() != shape) continue;
-            Vec3d a, b;
-            double radius = 0;
-            if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-                a = point->position;
-            } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-                a = segment->a;
-                b = segment->b;
-            } else {
-                const auto& circle = std::get<CircleSkeleton>(element.skeleton);
-                a = circle.center;
-                b = circle.normal;
-                radius = circle.radius;
-            }
-            field.shape.push_back(static_cast<Shape>(shape));
-            field.kernel.push_back(element.kernel);
-            field.strength.push_back(element.strength);
-            field.width.push_back(element.width);
-            field.ax.push_back(a.x);
-            field.ay.push_back(a.y);
-            field.az.push_back(a.z);
-            field.bx.push_back(b.x);
-            field.by.push_back(b.y);
-            field.bz.push_back(b.z);
-            field.radius.push_back(radius);
-            field.color.push_back(element.color);
-            field.source.push_back(static_cast<std::uint32_t>(i));
+            const auto shape = static_cast<Shape>(element.skeleton.index());
+            if (element.visible && group_of(shape, element.kernel) == group) add(field, element, i);
         }
     }
+    field.first[field_groups] = static_cast<std::uint32_t>(field.size());
     // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
     // support ends at 1.
     const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
@@ -76,6 +95,7 @@ Field compile(const Scene& scene) {
     field.greatest_width =
         field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
     field.compact = is_compact(field);
+    for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
     field.reach_box = box_of_reach(field);
     field.box = shrunk_box(field, field.reach_box);
     return field;

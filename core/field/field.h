@@ -3,6 +3,7 @@
 // core/field/skeleton.h.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,7 +16,14 @@ namespace ivory {
 
 enum class Shape : std::uint8_t { point, segment, circle };
 
-// Visible elements only, sorted by shape (points, segments, circles), in file order within a shape.
+// Elements of one shape and one kernel are a group: shape * 3 + kernel.
+inline constexpr std::size_t field_groups = 9;
+
+[[nodiscard]] constexpr std::size_t group_of(Shape shape, KernelKind kernel) {
+    return static_cast<std::size_t>(shape) * 3 + static_cast<std::size_t>(kernel);
+}
+
+// Visible elements only, sorted by group, in file order within a group.
 // The doubles are those of the scene, unchanged: every proof is about them.
 struct Field {
     double threshold = 0;    // T
@@ -35,10 +43,21 @@ struct Field {
     std::vector<double> radius;         // circle; otherwise 0
     std::vector<Color> color;           // linear RGB
     std::vector<std::uint32_t> source;  // index in Scene::elements
+    std::array<std::uint32_t, field_groups + 1> first{};  // of each group; the last: size()
     // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an
     // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
     std::vector<double> cut;
 
+    // What core/field/bundle.h asks for again and again, computed to nearest.
+    std::vector<double> mx, my, mz;  // segment: m = b - a; circle: unit normal; point: 0
+    // Segment: 1 / |m|^2, 0 where that is shorter than 1e-40; circle: radius; point: 0.
+    std::vector<double> extra;
+    std::vector<double> length;          // of m for a segment; otherwise 0
+    std::vector<double> inverse_width;   // 1 / w
+    std::vector<double> inverse_square;  // 1 / w^2
+
+    // Around all skeletons.
+    Box3 skeletons;
     // The box around all balls d_i <= reach_i, and that box shrunk: all of {f >= 0} lies in either,
     // proved. Empty: the surface is empty. mathematics: core/field/bounding_box.h
     Box3 reach_box;

@@ -1,28 +1,13 @@
 #include "core/field/support.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/field/along_ray.h"
-#include "core/field/bounding_box.h"
+#include "core/field/bundle_steps.h"
+#include "core/math/direction.h"
 
 namespace ivory {
-namespace {
-
-constexpr double u = unit_roundoff;
-
-// The greatest distance from a point to the skeleton of element i, rounded up.
-double farthest(const Field& field, std::size_t i, const Vec3d& from) {
-    const Box3 box = skeleton_box(field, i);
-    double square = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double side = std::max(std::abs(box.lo[k] - from[k]), std::abs(box.hi[k] - from[k]));
-        square += side * side;
-    }
-    return std::sqrt(square) * (1 + 16 * u);
-}
-
-}  // namespace
 
 ElementList all_elements(const Field& field) {
     ElementList list;
@@ -32,55 +17,36 @@ ElementList all_elements(const Field& field) {
     return list;
 }
 
-// A point x of a ray of the cone, at distance t from the apex, is t sine away from the axis at the
-// most. For a point c of a skeleton, the x of a ray that is nearest to c has t <= |c - apex|. So
-// the distance from the skeleton to any of the rays is at least its distance to the axis (a half
-// line) minus sine times the greatest |c - apex|.
+// The rays of a cone as core/field/bundle_steps.h wants them: two unit vectors an angle a <= 30
+// degrees apart have ends 2 sin(a / 2) apart, at most 1.036 sin a. What they are parametrized by
+// does not matter to distances; beyond its far end an element only gets farther away.
 ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone) {
-    ElementList list;
-    list.rest = parent.rest;
-    list.certainly_empty = parent.certainly_empty;
-    if (list.certainly_empty) return list;
+    const Vec3d& o = cone.apex;
+    const bool bounded = field.compact && cone.sine <= 0.45 &&
+                         std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
+    if (parent.certainly_empty || parent.elements.empty() || !bounded) return parent;
 
-    int exponent = 0;
-    std::frexp(
-        std::max(std::abs(cone.axis.x), std::max(std::abs(cone.axis.y), std::abs(cone.axis.z))),
-        &exponent);
-    const double scale = std::ldexp(1.0, 1 - exponent);
-    const Vec3d axis = scale * cone.axis;
-    const double speed = std::sqrt(dot(axis, axis)) * (1 - 8 * u);
+    thread_local ActiveElements candidates, kept;
+    candidates.take(field, parent.elements);
+    double far = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        far += std::max(std::abs(field.skeletons.lo[k] - o[k]),
+                        std::abs(field.skeletons.hi[k] - o[k]));
+    }
+    const Stretch rays{o, unit(cone.axis), 1.04 * cone.sine + 0x1p-48, 0, far * (1 + 0x1p-46)};
     // Each element is dropped once, whatever the number of lists between: all together stay below
     // 2^-52 T.
     const double share = field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));
+    const PeakSums peaks = bundle_steps().bound(field, rays, 1, share, candidates, kept);
 
-    double bound = parent.rest.hi;
-    double magnitude = std::abs(parent.rest.hi);
-    for (const std::uint32_t i : parent.elements) {
-        const double range = farthest(field, i, cone.apex);
-        const Interval<double> span{0.0, range / speed * (1 + 16 * u)};
-        double peak = 1;
-        if (cone.sine <= 1 && span.hi < 1e100) {
-            ElementAlongRay e;
-            along_ray(field, i, cone.apex, axis, span, infinity<double>, e);
-            const double away =
-                std::sqrt(e.least) * (1 - 4 * u) - range * cone.sine / field.width[i] * (1 + 8 * u);
-            const double q = away > 0 ? away * (1 - 4 * u) : 0;
-            peak = e.form == ElementAlongRay::Form::unbounded
-                       ? 1
-                       : kernel_at(field.kernel[i], q * q * (1 - 4 * u)).hi;
-        }
-        const double most = field.strength[i] * peak * (1 + 4 * u);
-        if (std::abs(most) <= share) {
-            list.rest =
-                list.rest + (most > 0 ? Interval<double>(0.0, most) : Interval<double>(most, 0.0));
-        } else {
-            list.elements.push_back(i);
-        }
-        bound += std::max(most, 0.0);
-        magnitude += std::abs(most);
-    }
-    const double terms = static_cast<double>(parent.elements.size()) + 4;
-    list.certainly_empty = bound + terms * 2 * u * magnitude < field.threshold;
+    ElementList list;
+    const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
+    list.rest = parent.rest + Interval<double>(-peaks.rest_below * sums, peaks.rest_above * sums);
+    list.elements.assign(kept.element.begin(),
+                         kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
+    const double slack =
+        static_cast<double>(candidates.size() + 4) * 0x1p-52 * (peaks.magnitude + field.threshold);
+    list.certainly_empty = peaks.above + list.rest.hi + slack < field.threshold;
     return list;
 }
 

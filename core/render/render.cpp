@@ -62,6 +62,18 @@ std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
 // so alike, its corner being a multiple of 16.
 bool on_stride(int i, int j, int stride) { return i % stride == 0 && j % stride == 0; }
+int first_on(int stride, int from) { return (from + stride - 1) / stride * stride; }
+
+// With fewer elements a tile's rays need no lists of their own.
+constexpr std::size_t parts_pay_from = 12;
+
+// Calls visit(square) for the squares of that side that a rectangle of twice the side consists of.
+template <class Visit>
+void for_quarters(const PixelRect& rect, int side, const Visit& visit) {
+    for (int y = rect.y0; y < rect.y1; y += side)
+        for (int x = rect.x0; x < rect.x1; x += side)
+            visit(PixelRect{x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)});
+}
 
 }  // namespace
 
@@ -395,30 +407,52 @@ class FrameJob::Work {
     }
 
     // The rays of the tile's pixels on `stride` but not on `coarser` (0: none is left out), in
-    // groups of 4 x 4 of them, since neighbours walk alike.
+    // groups of 4 x 4 pixels within groups of 8 x 8, since neighbours walk alike.
     void gather(TracedTile& traced, std::size_t index, int stride, int coarser) const {
         const Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
-        traced.rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
-        std::size_t count = 0;
+        RayBundle& rays = traced.rays;
+        rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
+        const bool in_parts = canvas_.tiles[index].list.elements.size() >= parts_pay_from;
+        if (in_parts) {
+            rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
+            rays.parts[0].first_part = 1;
+            for_quarters(rect, 8, [&](const PixelRect& quarter) { add_part(rays, quarter); });
+            rays.parts[0].end_of_parts = static_cast<std::uint32_t>(rays.part_count);
+        }
+        std::size_t count = 0, part = 1;
         alignas(64) std::array<double, pixels_in_tile> column, row;
-        const int side = 4 * stride;
-        for (int y = rect.y0; y < rect.y1; y += side) {
-            for (int x = rect.x0; x < rect.x1; x += side) {
-                for (int j = y; j < std::min(y + side, rect.y1); j += stride) {
-                    for (int i = x; i < std::min(x + side, rect.x1); i += stride) {
+        for_quarters(rect, 8, [&](const PixelRect& quarter) {
+            BundlePart& of_quarter = rays.parts[part++];
+            of_quarter.first = static_cast<std::uint32_t>(count);
+            of_quarter.first_part = static_cast<std::uint32_t>(rays.part_count);
+            for_quarters(quarter, 4, [&](const PixelRect& square) {
+                const auto first = static_cast<std::uint32_t>(count);
+                for (int j = first_on(stride, square.y0); j < square.y1; j += stride) {
+                    for (int i = first_on(stride, square.x0); i < square.x1; i += stride) {
                         if (coarser > 0 && on_stride(i, j, coarser)) continue;
                         column[count] = i;
                         row[count] = j;
                         traced.pixel[count++] = static_cast<std::uint32_t>(frame.at(i, j));
                     }
                 }
-            }
-        }
-        traced.rays.count = count;
+                if (!in_parts || first == count) return;
+                add_part(rays, square);
+                rays.parts[rays.part_count - 1].first = first;
+                rays.parts[rays.part_count - 1].end = static_cast<std::uint32_t>(count);
+            });
+            of_quarter.end = static_cast<std::uint32_t>(count);
+            of_quarter.end_of_parts = static_cast<std::uint32_t>(rays.part_count);
+        });
+        rays.count = count;
         primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
-                           row.data(), traced.rays.dx.data(), traced.rays.dy.data(),
-                           traced.rays.dz.data());
+                           row.data(), rays.dx.data(), rays.dy.data(), rays.dz.data());
+    }
+
+    void add_part(RayBundle& rays, const PixelRect& rect) const {
+        const Frame& frame = canvas_.frame;
+        const Bundle bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
+        rays.add_part({.axis = bundle.axis, .spread = bundle.spread});
     }
 
     bool shaded() const { return settings_.task != Task::trace; }

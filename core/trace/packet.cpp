@@ -28,15 +28,23 @@ void PacketTracer::take(const RayBundle& rays) {
     std::copy_n(rays.dx.begin(), rays.count, lanes_.dx.begin());
     std::copy_n(rays.dy.begin(), rays.count, lanes_.dy.begin());
     std::copy_n(rays.dz.begin(), rays.count, lanes_.dz.begin());
+
+    if (rays.part_count > 0) {
+        parts_.assign(rays.parts.begin(), rays.parts.begin() + rays.part_count);
+    } else {
+        parts_.assign(1, {.axis = rays.bundle.axis, .spread = rays.bundle.spread});
+    }
+    parts_[0].end = static_cast<std::uint32_t>(rays.count);
 }
 
 // Of the lanes whose m lies in the window, below `limit`.
 template <class Midpoint>
-void PacketTracer::surface_in(const Window& window, const Field& field, double limit,
-                              std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of) {
+void PacketTracer::surface_in(const Window& window, const BundlePart& part, const Field& field,
+                              double limit, std::span<SurfacePoint> surfaces,
+                              const Midpoint& midpoint_of) {
     index_.clear();
     t_.clear();
-    for (std::size_t k = 0; k < lanes_.count; ++k) {
+    for (std::size_t k = part.first; k < part.end; ++k) {
         const double m = midpoint_of(k);
         if (!(m >= window.begin && m < window.end && m < limit)) continue;
         index_.push_back(static_cast<std::uint32_t>(k));
@@ -59,33 +67,42 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     }
     const PacketSteps& steps = packet_steps();
     take(rays);
-    steps.prepare(lanes_, rays.bundle.axis);
+    steps.prepare(lanes_);
     const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
     const double limit = exact_limit(field, rays.bundle);
-    const auto begin = lanes_.state.begin();
-    const auto end = begin + static_cast<std::ptrdiff_t>(rays.count);
+    const auto any = [&](const BundlePart& part, Lanes::State state) {
+        const auto begin = lanes_.state.begin();
+        return std::find(begin + part.first, begin + part.end, std::int32_t{state}) !=
+               begin + part.end;
+    };
+    const BundlePart& all = parts_[0];
     bundle_field_.for_windows(
-        [](double, double) { return true; }, budget,
-        [&](const Window& window) {
+        parts_, [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
+        budget,
+        [&](Window& window, const BundlePart& part) {
             if (!window.coarse_usable) {
-                std::replace(begin, end, std::int32_t{Lanes::walking},
-                             std::int32_t{Lanes::undecided});
+                std::replace(lanes_.state.begin() + all.first, lanes_.state.begin() + all.end,
+                             std::int32_t{Lanes::walking}, std::int32_t{Lanes::undecided});
                 return false;
             }
-            const std::uint64_t walked = steps.walk(window, T, unit, lanes_);
-            const std::uint64_t enclosed =
-                steps.enclose(window, T, unit, settings.greatest_cell, lanes_);
-            counts.evaluations += walked + enclosed;
-            counts.element_evaluations +=
-                walked * window.coarse.size() + enclosed * window.fine.size();
-            if (!surfaces.empty()) {
-                surface_in(window, field, limit, surfaces, [&](std::size_t k) {
-                    return lanes_.state[k] == Lanes::hit
-                               ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
-                               : nan;
-                });
+            const std::uint64_t walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
+            counts.evaluations += walked;
+            counts.element_evaluations += walked * window.coarse.size();
+            if (any(part, Lanes::candidate)) {
+                bundle_field_.complete(window);
+                const std::uint64_t enclosed = steps.enclose(
+                    window, T, unit, settings.greatest_cell, part.first, part.end, lanes_);
+                counts.evaluations += enclosed;
+                counts.element_evaluations += enclosed * window.fine.size();
+                if (!surfaces.empty()) {
+                    surface_in(window, part, field, limit, surfaces, [&](std::size_t k) {
+                        return lanes_.state[k] == Lanes::hit
+                                   ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
+                                   : nan;
+                    });
+                }
             }
-            return std::find(begin, end, std::int32_t{Lanes::walking}) != end;
+            return any(all, Lanes::walking);
         });
     for (std::size_t k = 0; k < rays.count; ++k) {
         switch (lanes_.state[k]) {
@@ -111,12 +128,15 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
     take(rays);
     const double limit = exact_limit(field, rays.bundle);
     bundle_field_.for_windows(
-        [&](double t0, double t1) {
-            return std::any_of(m.begin(), m.end(), [=](double t) { return t >= t0 && t < t1; });
+        parts_,
+        [&](const BundlePart& part, double t0, double t1) {
+            return std::any_of(m.begin() + part.first, m.begin() + part.end,
+                               [=](double t) { return t >= t0 && t < t1; });
         },
         std::numeric_limits<int>::max(),
-        [&](const Window& window) {
-            surface_in(window, field, limit, surfaces, [&](std::size_t k) { return m[k]; });
+        [&](Window& window, const BundlePart& part) {
+            bundle_field_.complete(window);
+            surface_in(window, part, field, limit, surfaces, [&](std::size_t k) { return m[k]; });
             return true;
         });
 }

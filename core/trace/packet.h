@@ -45,11 +45,12 @@ class PacketTracer {
   private:
     void take(const RayBundle& rays);
     template <class Midpoint>
-    void surface_in(const Window& window, const Field& field, double limit,
+    void surface_in(const Window& window, const BundlePart& part, const Field& field, double limit,
                     std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of);
 
     BundleField bundle_field_;
     Lanes lanes_;
+    std::vector<BundlePart> parts_;
     std::vector<std::uint32_t> index_;  // of lanes in a window, their t and what is found there
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;

@@ -3,104 +3,19 @@
 #include <cmath>
 #include <limits>
 
-#include "core/interval/exp.h"
 #include "core/math/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
-#include <hwy/highway.h>
+#include "core/field/kernel_lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 using F = hn::ScalableTag<float>;
-using D = hn::ScalableTag<double>;
-template <class Tag>
-using V = hn::Vec<Tag>;
-template <class Tag>
-using M = hn::Mask<Tag>;
-
-// e^-s for s >= 0: exp_nearest of core/interval/exp.h, operation by operation; where the machine
-// fuses products with sums it rounds less often, so that its bound holds all the more.
-template <class Tag>
-HWY_INLINE V<Tag> exp_minus(Tag d, V<Tag> s) {
-    using Real = hn::TFromD<Tag>;
-    using C = ExpConstants<Real>;
-    const hn::RebindToUnsigned<Tag> bits;
-    const auto c = [&](Real value) HWY_ATTR { return hn::Set(d, value); };
-    const V<Tag> x = hn::Max(hn::Neg(s), c(C::least));
-    const V<Tag> shifted = hn::MulAdd(x, c(C::inverse_of_ln2), c(C::rounder));
-    const V<Tag> k = hn::Sub(shifted, c(C::rounder));
-    const V<Tag> r = hn::NegMulAdd(k, c(C::ln2_low), hn::NegMulAdd(k, c(C::ln2_high), x));
-    const V<Tag> r2 = hn::Mul(r, r);
-    V<Tag> q;
-    if constexpr (sizeof(Real) == 8) {
-        const auto& t = C::tail;
-        const V<Tag> r4 = hn::Mul(r2, r2);
-        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
-        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
-        const V<Tag> q45 = hn::MulAdd(c(t[5]), r, c(t[4]));
-        const V<Tag> q67 = hn::MulAdd(c(t[7]), r, c(t[6]));
-        const V<Tag> q89 = hn::MulAdd(c(t[9]), r, c(t[8]));
-        q = hn::MulAdd(r4, hn::MulAdd(r4, q89, hn::MulAdd(q67, r2, q45)), hn::MulAdd(q23, r2, q01));
-    } else {
-        const auto& t = C::tail;
-        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
-        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
-        q = hn::MulAdd(r2, hn::MulAdd(r2, c(t[4]), q23), q01);
-    }
-    const V<Tag> tail = hn::Mul(hn::Mul(r, r2), q);
-    const V<Tag> sum = hn::Add(c(1), hn::Add(r, hn::MulAdd(c(Real(0.5)), r2, tail)));
-    const auto exponent =
-        hn::ShiftLeft < sizeof(Real) == 8 ? 52 : 23 > (hn::BitCast(bits, shifted));
-    const V<Tag> scaled = hn::BitCast(d, hn::Add(hn::BitCast(bits, sum), exponent));
-    return hn::IfThenElseZero(hn::Le(s, c(-C::least)), scaled);
-}
-
-template <class Tag>
-struct KernelValue {
-    V<Tag> k, dk;  // k(s), k'(s)
-};
-
-template <KernelKind kind, class Tag>
-HWY_INLINE KernelValue<Tag> kernel(Tag d, V<Tag> s) {
-    using Real = hn::TFromD<Tag>;
-    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
-    if constexpr (kind == KernelKind::blinn) {
-        const V<Tag> e = exp_minus(d, s);
-        return {e, hn::Neg(e)};
-    } else if constexpr (kind == KernelKind::wyvill) {
-        // (1 - s)^2 (9 - 4 s) / 9 and -2/9 (1 - s) (11 - 6 s)
-        const V<Tag> in = hn::Max(hn::Sub(c(1), s), c(0));
-        const V<Tag> k =
-            hn::Mul(hn::Mul(in, in), hn::Mul(hn::NegMulAdd(c(4), s, c(9)), c(1.0 / 9)));
-        const V<Tag> dk = hn::Mul(hn::Mul(in, c(-2.0 / 9)), hn::NegMulAdd(c(6), s, c(11)));
-        return {k, dk};
-    } else {
-        // 1 - 3 s and -3; beyond s = 1/9: 3/2 (1 - q)^2 and -3/2 (1 - q) / q
-        const V<Tag> q = hn::Sqrt(s);
-        const V<Tag> in = hn::Max(hn::Sub(c(1), q), c(0));
-        const V<Tag> half = hn::Mul(c(1.5), in);
-        const M<Tag> core = hn::Le(s, c(1.0 / 9));
-        return {hn::IfThenElse(core, hn::NegMulAdd(c(3), s, c(1)), hn::Mul(half, in)),
-                hn::IfThenElse(core, c(-3), hn::Div(hn::Neg(half), hn::Max(q, c(1.0 / 4))))};
-    }
-}
-
-template <class Tag>
-struct Vec3v {
-    V<Tag> x, y, z;
-};
-
-template <class Tag>
-HWY_INLINE V<Tag> dot(const Vec3v<Tag>& a, const Vec3v<Tag>& b) {
-    return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
-}
 
 // From the skeleton's nearest point to p, and its square. For a circle
 // away = v - r across / rho, and its square from (rho - r)^2 + h^2.
@@ -189,22 +104,32 @@ HWY_INLINE FieldValue<Tag> evaluate(Tag d, const Entries& entries, const Counts&
     return sum;
 }
 
-void prepare(Lanes& lanes, const Vec3d& axis) {
+void prepare(Lanes& lanes) {
     for (std::size_t k = 0; k < lanes.count; ++k) {
         lanes.fx[k] = static_cast<float>(lanes.dx[k]);
         lanes.fy[k] = static_cast<float>(lanes.dy[k]);
         lanes.fz[k] = static_cast<float>(lanes.dz[k]);
-        lanes.ex[k] = static_cast<float>(lanes.dx[k] - axis.x);
-        lanes.ey[k] = static_cast<float>(lanes.dy[k] - axis.y);
-        lanes.ez[k] = static_cast<float>(lanes.dz[k] - axis.z);
         lanes.state[k] = Lanes::walking;
     }
-    // The vectors' last ones are whole: numbers, but nobody's.
-    for (std::size_t k = lanes.count; k < (lanes.count + 15) / 16 * 16; ++k) {
+    // The last vector is whole: numbers, but nobody's.
+    for (std::size_t k = lanes.count; k < lanes.count + Lanes::room - Lanes::capacity; ++k) {
         lanes.fx[k] = lanes.fy[k] = lanes.fz[k] = 0;
-        lanes.ex[k] = lanes.ey[k] = lanes.ez[k] = 0;
+        lanes.dx[k] = lanes.dy[k] = lanes.dz[k] = 0;
         lanes.state[k] = Lanes::unused;
     }
+}
+
+// values - minus, computed in double.
+HWY_INLINE V<F> rounded_difference(const double* values, double minus) {
+    const D d;
+    const V<D> lo = hn::Sub(hn::LoadU(d, values), hn::Set(d, minus));
+#if HWY_TARGET == HWY_SCALAR
+    return hn::DemoteTo(F(), lo);
+#else
+    const hn::Half<F> half;
+    const V<D> hi = hn::Sub(hn::LoadU(d, values + hn::Lanes(d)), hn::Set(d, minus));
+    return hn::Combine(F(), hn::DemoteTo(half, hi), hn::DemoteTo(half, lo));
+#endif
 }
 
 // Every formula below is monotonic in what it is given, and its own few roundings (below 2^-20 in
@@ -212,7 +137,8 @@ void prepare(Lanes& lanes, const Vec3d& axis) {
 constexpr float tight = 0x1p-18f;
 constexpr int most_steps = 48, most_guesses = 6;
 
-std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& lanes) {
+std::uint64_t walk(const Window& window, double threshold, double unit, std::size_t begin_lane,
+                   std::size_t end_lane, Lanes& lanes) {
     const F d;
     const hn::RebindToSigned<F> di;
     const std::size_t N = hn::Lanes(d);
@@ -231,16 +157,18 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
     const V<F> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
     std::uint64_t steps = 0;
 
-    for (std::size_t first = 0; first < lanes.count; first += N) {
-        auto state = hn::Load(di, &lanes.state[first]);
+    for (std::size_t first = begin_lane; first < end_lane; first += N) {
+        // What lies beyond the end is another part's.
+        auto state = hn::LoadU(di, &lanes.state[first]);
         const auto was_walking = hn::Eq(state, hn::Set(di, Lanes::walking));
-        M<F> walking = hn::RebindMask(d, was_walking);
+        M<F> walking = hn::And(hn::RebindMask(d, was_walking), hn::FirstN(d, end_lane - first));
         if (hn::AllFalse(d, walking)) continue;
-        const Vec3v<F> direction{hn::Load(d, &lanes.fx[first]), hn::Load(d, &lanes.fy[first]),
-                                 hn::Load(d, &lanes.fz[first])};
-        const Vec3v<F> middle{hn::Mul(t_middle, hn::Load(d, &lanes.ex[first])),
-                              hn::Mul(t_middle, hn::Load(d, &lanes.ey[first])),
-                              hn::Mul(t_middle, hn::Load(d, &lanes.ez[first]))};
+        const Vec3v<F> direction{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
+                                 hn::LoadU(d, &lanes.fz[first])};
+        const Vec3v<F> middle{
+            hn::Mul(t_middle, rounded_difference(&lanes.dx[first], window.axis.x)),
+            hn::Mul(t_middle, rounded_difference(&lanes.dy[first], window.axis.y)),
+            hn::Mul(t_middle, rounded_difference(&lanes.dz[first], window.axis.z))};
         V<F> tau = begin, guess_lo = zero, guess_hi = zero;
         M<F> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
         V<F> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
@@ -310,8 +238,9 @@ std::uint64_t walk(const Window& window, double threshold, double unit, Lanes& l
         undecided = hn::Or(undecided, hn::Or(walking, guessing));  // no end of steps
         state = hn::IfThenElse(hn::RebindMask(di, found), hn::Set(di, Lanes::candidate), state);
         state = hn::IfThenElse(hn::RebindMask(di, undecided), hn::Set(di, Lanes::undecided), state);
-        hn::Store(state, di, &lanes.state[first]);
-        hn::Store(tau, d, &lanes.guess[first]);
+        hn::StoreU(state, di, &lanes.state[first]);
+        const V<F> guess = hn::LoadU(d, &lanes.guess[first]);
+        hn::StoreU(hn::IfThenElse(found, tau, guess), d, &lanes.guess[first]);
     }
     return steps;
 }
@@ -437,11 +366,15 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
 }
 
 std::uint64_t enclose(const Window& window, double threshold, double unit, double half_width,
-                      Lanes& lanes) {
+                      std::size_t first, std::size_t end, Lanes& lanes) {
     Batch batch;
     std::uint64_t steps = 0;
-    for (std::size_t k = 0; k < lanes.count; ++k) {
+    for (std::size_t k = first; k < end; ++k) {
         if (lanes.state[k] != Lanes::candidate) continue;
+        if (!window.fine_usable) {
+            lanes.state[k] = Lanes::undecided;
+            continue;
+        }
         const std::size_t at = batch.count++;
         batch.lane[at] = static_cast<std::uint32_t>(k);
         batch.dx[at] = lanes.dx[k];

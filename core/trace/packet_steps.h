@@ -19,6 +19,7 @@ namespace ivory {
 // One ray of a bundle and what is known of it, as structure of arrays.
 struct Lanes {
     static constexpr std::size_t capacity = 256;
+    static constexpr std::size_t room = capacity + 16;  // the last vector is read whole
 
     enum State : std::int32_t {
         walking,    // f < 0 on [0, t) so far
@@ -29,28 +30,28 @@ struct Lanes {
     };
 
     std::size_t count = 0;
-    alignas(64) std::array<double, capacity> dx, dy, dz;  // directions
-    alignas(64) std::array<float, capacity> fx, fy, fz;   // the same, rounded
-    alignas(64) std::array<float, capacity> ex, ey, ez;   // direction - axis, rounded
-    alignas(64) std::array<std::int32_t, capacity> state;
-    alignas(64) std::array<float, capacity> guess;  // tau
+    alignas(64) std::array<double, room> dx, dy, dz;  // directions
+    alignas(64) std::array<float, room> fx, fy, fz;   // the same, rounded
+    alignas(64) std::array<std::int32_t, room> state;
+    alignas(64) std::array<float, room> guess;  // tau
     alignas(64) std::array<double, capacity> t_lo, t_hi;
 };
 
 struct PacketSteps {
-    // dx, dy, dz stand; fills the rest for a bundle with that axis. State: walking.
-    void (*prepare)(Lanes& lanes, const Vec3d& axis);
+    // dx, dy, dz stand; fills the rest. State: walking.
+    void (*prepare)(Lanes& lanes);
 
-    // Safe steps of every walking lane from the window's begin to its end, in float: lanes that
-    // come to a root become candidates, those that float cannot decide undecided. Counts pairs of
-    // a lane and a step.
-    std::uint64_t (*walk)(const Window& window, double threshold, double unit, Lanes& lanes);
+    // Safe steps of every walking lane of first .. end from the window's begin to its end, in
+    // float: lanes that come to a root become candidates, those that float cannot decide undecided.
+    // Counts pairs of a lane and a step.
+    std::uint64_t (*walk)(const Window& window, double threshold, double unit, std::size_t first,
+                          std::size_t end, Lanes& lanes);
 
-    // Encloses the candidates' roots in double, on the grid whose cell is the greatest power of
-    // two below `half_width` / |d| in the units of core/trace/isolate.h: they become hits, or
-    // undecided.
+    // Encloses the candidates' roots, of lanes first .. end, in double, on the grid whose cell is
+    // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
+    // become hits, or undecided.
     std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
-                             Lanes& lanes);
+                             std::size_t first, std::size_t end, Lanes& lanes);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.

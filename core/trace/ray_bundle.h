@@ -15,9 +15,14 @@ struct RayBundle {
     Bundle bundle;          // holds all rays; their directions have length 1 within 2^-50
     std::size_t count = 0;  // 0 .. capacity
     alignas(64) std::array<double, capacity> dx, dy, dz;
+    // None, or the bundle itself and then its parts, as core/field/bundle.h wants them. What a part
+    // is must not depend on which rays there are, or answers would.
+    std::array<BundlePart, 21> parts;
+    std::size_t part_count = 0;
 
     [[nodiscard]] std::size_t size() const { return count; }
     [[nodiscard]] Ray ray(std::size_t k) const { return {bundle.origin, {dx[k], dy[k], dz[k]}}; }
+    void add_part(const BundlePart& part) { parts[part_count++] = part; }
     void add(const Vec3d& direction) {
         dx[count] = direction.x;
         dy[count] = direction.y;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -34,8 +35,11 @@ void for_random_windows(const Visit& visit) {
         BundleField along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
         const double scale = along.threshold() / field.threshold;
-        const auto every = [](double, double) { return true; };
-        along.for_windows(every, std::numeric_limits<int>::max(), [&](const Window& window) {
+        const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
+        const auto every = [](const BundlePart&, double, double) { return true; };
+        const int no_end = std::numeric_limits<int>::max();
+        along.for_windows(parts, every, no_end, [&](Window& window, const BundlePart&) {
+            along.complete(window);
             for (int n = 0; n < 4; ++n) {
                 visit(field, bundle, window, scale,
                       unit(bundle.axis + 0.019 * random.uniform(0, 1) * unit(random.in_cube(1))),

@@ -201,7 +201,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     lanes->dx[0] = 1;
     lanes->dy[0] = lanes->dz[0] = 0;
     const Vec3d axis{1, 0, 0};
-    packet_steps().prepare(*lanes, axis);
+    packet_steps().prepare(*lanes);
 
     Window window;
     window.begin = 0;
@@ -224,7 +224,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
                              .extra = 0});
     window.coarse_count[0] = 1;
     window.coarse_usable = true;
-    packet_steps().walk(window, 1, 1, *lanes);
+    packet_steps().walk(window, 1, 1, 0, 1, *lanes);
     EXPECT_EQ(lanes->state[0], Lanes::undecided);
 }
 

@@ -1,0 +1,91 @@
+// What elements can do on a stretch of a bundle, in SIMD over the elements: one body for all
+// instruction sets, the best one that the machine has chosen at run time (Google Highway).
+//
+// Doubles are computed to nearest; each result that has to bound something is moved by 2^-46 of the
+// magnitudes that entered it, and no chain of operations here is longer than some 40 roundings.
+// Where a machine fuses products with sums there are fewer. Sums of bounds have to be widened by
+// whoever uses them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/field/field.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+struct Window;
+
+// All points origin + t d of a bundle's rays (core/field/bundle.h) with begin <= t <= end.
+struct Stretch {
+    Vec3d origin, axis;
+    double spread = 0;  // >= |d - axis|
+    double begin = 0, end = 0;
+};
+
+// Elements that matter on a stretch, sorted by group.
+struct ActiveElements {
+    std::array<std::uint32_t, field_groups + 1> first{};  // of each group; the last: how many
+    // Indices into Field. Vectors are read whole, beyond the last element too: 0 stands there.
+    std::vector<std::int64_t> element;
+    std::vector<double> least, most;  // bounds of s on the stretch
+    std::vector<double> peak;         // upper bound of k
+    std::vector<double> inverse;      // circle: upper bound of 1 / rho; < 0: rho may be 0
+
+    static constexpr std::size_t room = 16;
+
+    [[nodiscard]] std::size_t size() const { return first[field_groups]; }
+    // A sorted list, of which nothing more is known.
+    void take(const Field& field, std::span<const std::uint32_t> elements);
+    // Keeps nothing.
+    void make_room(std::size_t count);
+    // All groups are there: so many elements.
+    void end(std::size_t count);
+};
+
+// Sums over elements, as computed.
+struct PeakSums {
+    double above = 0, magnitude = 0;        // of the kept ones: peaks above 0, all peaks
+    double rest_above = 0, rest_below = 0;  // what those left out can add and take away
+};
+
+struct BendSums {
+    double rise = 0, fall = 0;  // of bounds of f'' and of -f''
+    double kinks = 0;           // and of |f'| of the elements whose f'' has none
+};
+
+// For one stage of a window: sums over its entries and over what that stage leaves out.
+struct StageSums {
+    double error = 0, slope = 0;  // of what rounding does to |F| and |F'|, and left-out |F'|
+    double magnitude = 0;         // of the peaks
+    double rest_above = 0, rest_below = 0;
+    double full_slope = 0;  // of bounds of |F'| of all elements
+    bool usable = true;
+};
+
+struct BundleSteps {
+    // Of the `candidates` those with |F| possibly above `cut` (of strengths times `scale`).
+    PeakSums (*bound)(const Field& field, const Stretch& stretch, double scale, double cut,
+                      const ActiveElements& candidates, ActiveElements& kept);
+
+    // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
+    BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,
+                     ActiveElements& active);
+
+    // The window's coarse entries, in units of `unit`: those with peaks above `cut`.
+    StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale, double unit,
+                        double cut, const ActiveElements& active, Window& window);
+
+    // The window's fine entries: all.
+    StageSums (*fine)(const Field& field, const Stretch& stretch, double scale,
+                      const ActiveElements& active, Window& window);
+};
+
+// For this machine.
+[[nodiscard]] const BundleSteps& bundle_steps();
+
+}  // namespace ivory
