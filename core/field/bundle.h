@@ -108,7 +108,7 @@ class BundleField {
     // certainly holds on the parts of span() between them. parts[0] is the bundle. Which windows
     // there are depends on field, list, parts and tolerance alone. Those that
     // wanted(part, begin, end) denies are passed over. When `budget` stretches of t have been
-    // bounded, one that is not `coarse_usable` is the last.
+    // bounded, one for all rays that is not `coarse_usable` and begins at 0 is the last.
     template <class Wanted, class Visit>
     void for_windows(std::span<const BundlePart> parts, const Wanted& wanted, int budget,
                      const Visit& visit) {
@@ -149,7 +149,8 @@ class BundleField {
         if (!wanted(part, t0, t1)) return true;
         if (left_-- <= 0) {
             window_.coarse_usable = false;
-            visit(window_, part);
+            window_.begin = 0;
+            visit(window_, parts_[0]);
             return false;
         }
         if (!bound(depth, part, t0 - pad, t1 + pad)) return true;

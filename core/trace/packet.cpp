@@ -9,9 +9,9 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Stretches of t that are bounded for one bundle; if that is not enough, its rays are better traced
-// one by one.
-constexpr int budget = 1024;
+// Stretches of t that are bounded for one bundle and for each of its parts; if that is not enough,
+// its rays are better traced one by one.
+constexpr int budget = 1024, budget_of_part = 256;
 
 // The t up to which the places of core/field/bundle.h are close enough for normals and colours:
 // they are off by 2^-98 of it.
@@ -62,7 +62,8 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     for (SurfacePoint& surface : surfaces) surface.normal = {nan, nan, nan};
     const Interval<double> nothing = Interval<double>::empty_set();
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance)) {
-        std::fill(isolations.begin(), isolations.end(), Isolation{Status::unresolved, nothing});
+        std::fill(isolations.begin(), isolations.end(),
+                  Isolation{Status::unresolved, {0.0, infinity<double>}});
         return;
     }
     const PacketSteps& steps = packet_steps();
@@ -78,29 +79,40 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     const BundlePart& all = parts_[0];
     bundle_field_.for_windows(
         parts_, [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
-        budget,
+        budget + static_cast<int>(parts_.size()) * budget_of_part,
         [&](Window& window, const BundlePart& part) {
             if (!window.coarse_usable) {
-                std::replace(lanes_.state.begin() + all.first, lanes_.state.begin() + all.end,
-                             std::int32_t{Lanes::walking}, std::int32_t{Lanes::undecided});
-                return false;
+                for (std::size_t k = part.first; k < part.end; ++k) {
+                    if (lanes_.state[k] != Lanes::walking) continue;
+                    lanes_.state[k] = Lanes::undecided;
+                    lanes_.t_lo[k] = window.begin;
+                }
+                return any(all, Lanes::walking);
             }
             const std::uint64_t walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
             counts.evaluations += walked;
             counts.element_evaluations += walked * window.coarse.size();
-            if (any(part, Lanes::candidate)) {
-                bundle_field_.complete(window);
-                const std::uint64_t enclosed = steps.enclose(
-                    window, T, unit, settings.greatest_cell, part.first, part.end, lanes_);
-                counts.evaluations += enclosed;
-                counts.element_evaluations += enclosed * window.fine.size();
-                if (!surfaces.empty()) {
-                    surface_in(window, part, field, limit, surfaces, [&](std::size_t k) {
-                        return lanes_.state[k] == Lanes::hit
-                                   ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
-                                   : nan;
-                    });
-                }
+            if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) {
+                return any(all, Lanes::walking);
+            }
+            bundle_field_.complete(window);
+            const auto enclose = [&](Lanes::State otherwise) {
+                return steps.enclose(window, T, settings.greatest_cell, part.first, part.end,
+                                     otherwise, lanes_);
+            };
+            std::uint64_t fine = enclose(Lanes::doubtful);
+            if (any(part, Lanes::doubtful)) {
+                fine += steps.walk_again(window, T, part.first, part.end, lanes_);
+                fine += enclose(Lanes::undecided);
+            }
+            counts.evaluations += fine;
+            counts.element_evaluations += fine * window.fine.size();
+            if (!surfaces.empty()) {
+                surface_in(window, part, field, limit, surfaces, [&](std::size_t k) {
+                    return lanes_.state[k] == Lanes::hit
+                               ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
+                               : nan;
+                });
             }
             return any(all, Lanes::walking);
         });
@@ -113,7 +125,7 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                 isolations[k] = {Status::hit, {lanes_.t_lo[k], lanes_.t_hi[k]}};
                 break;
             default:
-                isolations[k] = {Status::unresolved, nothing};
+                isolations[k] = {Status::unresolved, {lanes_.t_lo[k], infinity<double>}};
         }
     }
 }

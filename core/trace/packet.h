@@ -30,9 +30,9 @@ class PacketTracer {
         double greatest_cell;  // of the grid, a length
     };
 
-    // hit and miss are proved; unresolved (with nothing in t) says that the ray has to be traced by
-    // other means. `list` has to be valid on the bundle. Where `surfaces` is not empty it gets what
-    // `surface` would give for the hits' midpoints, or a normal of NaN.
+    // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
+    // on [0, t.lo). `list` has to be valid on the bundle. Where `surfaces` is not empty it gets
+    // what `surface` would give for the hits' midpoints, or a normal of NaN.
     void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                  const Settings& settings, std::span<Isolation> isolations,
                  std::span<SurfacePoint> surfaces, Counts& counts);

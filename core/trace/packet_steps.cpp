@@ -119,6 +119,91 @@ void prepare(Lanes& lanes) {
     }
 }
 
+// What the walk needs to know of the stage that it runs in.
+template <class Real>
+struct Stage;
+
+// The walk's formulas are monotonic in what they are given, and their own few roundings (below
+// 2^-20 in all, or 2^-48) are less than what `tight` takes away or adds.
+template <>
+struct Stage<float> {
+    static constexpr float tight = 0x1p-18f;
+    static constexpr double last_place = 0x1p-22, tiny = 1e-20, huge = 3e38;
+    static constexpr double settled = 0x1p-10;  // of half the window: Newton does the rest
+    static constexpr int most_guesses = 6;
+    static constexpr Lanes::State takes = Lanes::walking, leaves = Lanes::doubtful;
+
+    const Window& window;
+    double unit;
+
+    const auto& entries() const { return window.coarse; }
+    const auto& counts() const { return window.coarse_count; }
+    const StageBounds& bounds() const { return window.coarse_bounds; }
+    double begin() const { return window.tau_begin; }
+    double end() const { return window.tau_end; }
+};
+
+template <>
+struct Stage<double> {
+    static constexpr double tight = 0x1p-44;
+    static constexpr double last_place = 0x1p-50, tiny = 1e-200, huge = 1e300;
+    static constexpr double settled = 0x1p-36;
+    static constexpr int most_guesses = 20;
+    static constexpr Lanes::State takes = Lanes::doubtful, leaves = Lanes::undecided;
+
+    const Window& window;
+    static constexpr double unit = 1;
+
+    const auto& entries() const { return window.fine; }
+    const auto& counts() const { return window.fine_count; }
+    const StageBounds& bounds() const { return window.fine_bounds; }
+    double begin() const { return (window.begin - window.middle) * (1 + 0x1p-50); }
+    double end() const { return (window.end - window.middle) * (1 + 0x1p-50); }
+};
+
+template <class Tag>
+HWY_INLINE std::uint64_t bits_of(Tag d, M<Tag> mask) {
+    alignas(8) std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < (hn::Lanes(d) + 7) / 8; ++k) {
+        bits |= std::uint64_t{bytes[k]} << (8 * k);
+    }
+    return bits;
+}
+
+// Those in that state; what lies beyond the end is another part's.
+HWY_INLINE M<F> lanes_in(F d, Lanes::State state, const Lanes& lanes, std::size_t first,
+                         std::size_t end) {
+    const hn::RebindToSigned<F> di;
+    const auto in_state =
+        hn::Eq(hn::LoadU(di, &lanes.state[first]), hn::Set(di, std::int32_t{state}));
+    return hn::And(hn::RebindMask(d, in_state), hn::FirstN(d, end - first));
+}
+
+HWY_INLINE M<D> lanes_in(D d, Lanes::State state, const Lanes& lanes, std::size_t first,
+                         std::size_t end) {
+    alignas(64) double in_state[HWY_MAX_BYTES / sizeof(double)];
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) in_state[k] = lanes.state[first + k] == state;
+    return hn::And(hn::Gt(hn::Load(d, in_state), hn::Zero(d)), hn::FirstN(d, end - first));
+}
+
+// Directions, and what (2) of core/field/bundle.h adds to them in the window's middle.
+template <class Tag>
+struct RayLanes {
+    Vec3v<Tag> direction, middle;
+};
+
+HWY_INLINE RayLanes<D> rays_of(D d, const Window& window, double, const Lanes& lanes,
+                               std::size_t first) {
+    const V<D> x = hn::LoadU(d, &lanes.dx[first]), y = hn::LoadU(d, &lanes.dy[first]),
+               z = hn::LoadU(d, &lanes.dz[first]), middle = hn::Set(d, window.middle);
+    return {{x, y, z},
+            {hn::Mul(middle, hn::Sub(x, hn::Set(d, window.axis.x))),
+             hn::Mul(middle, hn::Sub(y, hn::Set(d, window.axis.y))),
+             hn::Mul(middle, hn::Sub(z, hn::Set(d, window.axis.z)))}};
+}
+
 // values - minus, computed in double.
 HWY_INLINE V<F> rounded_difference(const double* values, double minus) {
     const D d;
@@ -132,100 +217,104 @@ HWY_INLINE V<F> rounded_difference(const double* values, double minus) {
 #endif
 }
 
-// Every formula below is monotonic in what it is given, and its own few roundings (below 2^-20 in
-// all) are less than what `tight` takes away or adds.
-constexpr float tight = 0x1p-18f;
-constexpr int most_steps = 48, most_guesses = 6;
+HWY_INLINE RayLanes<F> rays_of(F d, const Window& window, double unit, const Lanes& lanes,
+                               std::size_t first) {
+    const V<F> middle = hn::Set(d, static_cast<float>(window.middle / unit));
+    return {{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
+             hn::LoadU(d, &lanes.fz[first])},
+            {hn::Mul(middle, rounded_difference(&lanes.dx[first], window.axis.x)),
+             hn::Mul(middle, rounded_difference(&lanes.dy[first], window.axis.y)),
+             hn::Mul(middle, rounded_difference(&lanes.dz[first], window.axis.z))}};
+}
 
-std::uint64_t walk(const Window& window, double threshold, double unit, std::size_t begin_lane,
-                   std::size_t end_lane, Lanes& lanes) {
-    const F d;
-    const hn::RebindToSigned<F> di;
+constexpr int most_steps = 48;
+
+template <class Tag>
+std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
+                         std::size_t begin_lane, std::size_t end_lane, Lanes& lanes) {
+    using Real = hn::TFromD<Tag>;
+    using S = Stage<Real>;
+    constexpr Real tight = S::tight;
+    const Window& window = stage.window;
+    const double unit = stage.unit;
     const std::size_t N = hn::Lanes(d);
-    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<float>(value)); };
-    const StageBounds& bounds = window.coarse_bounds;
-    const V<F> above = c(bounds.above * (1 + 0x1p-20)), below = c(bounds.below * (1 + 0x1p-20));
-    const V<F> slope_error = c(bounds.slope * (1 + 0x1p-20));
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
+    const StageBounds& bounds = stage.bounds();
+    const V<Tag> above = c(bounds.above * (1 + 0x1p-20)), below = c(bounds.below * (1 + 0x1p-20));
+    const V<Tag> slope_error = c(bounds.slope * (1 + 0x1p-20));
     // f'' per unit^2, made larger by what the formulas may lose.
-    const V<F> rise = c(window.rise * unit * unit * (1 + 2 * tight) + 1e-20);
-    const V<F> fall = c(window.fall * unit * unit * (1 + 2 * tight) + 1e-20);
-    const V<F> t_middle = c(window.middle / unit);
-    const V<F> begin = hn::Set(d, window.tau_begin), end = hn::Set(d, window.tau_end);
+    const V<Tag> rise = c(window.rise * unit * unit * (1 + 2 * tight) + S::tiny);
+    const V<Tag> fall = c(window.fall * unit * unit * (1 + 2 * tight) + S::tiny);
+    const V<Tag> begin = c(stage.begin()), end = c(stage.end());
     // The sum tau + step is off by half a unit of its last place.
-    const V<F> slack = hn::Set(d, 0x1p-22f * window.tau_end);
-    const V<F> settled = c(0x1p-10 * window.tau_end);
-    const V<F> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
+    const V<Tag> slack = c(S::last_place * stage.end());
+    const V<Tag> settled = c(S::settled * stage.end());
+    const V<Tag> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
     std::uint64_t steps = 0;
 
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
-        // What lies beyond the end is another part's.
-        auto state = hn::LoadU(di, &lanes.state[first]);
-        const auto was_walking = hn::Eq(state, hn::Set(di, Lanes::walking));
-        M<F> walking = hn::And(hn::RebindMask(d, was_walking), hn::FirstN(d, end_lane - first));
+        M<Tag> walking = lanes_in(d, S::takes, lanes, first, end_lane);
         if (hn::AllFalse(d, walking)) continue;
-        const Vec3v<F> direction{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
-                                 hn::LoadU(d, &lanes.fz[first])};
-        const Vec3v<F> middle{
-            hn::Mul(t_middle, rounded_difference(&lanes.dx[first], window.axis.x)),
-            hn::Mul(t_middle, rounded_difference(&lanes.dy[first], window.axis.y)),
-            hn::Mul(t_middle, rounded_difference(&lanes.dz[first], window.axis.z))};
-        V<F> tau = begin, guess_lo = zero, guess_hi = zero;
-        M<F> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
-        V<F> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
+        const M<Tag> taken = walking;
+        const RayLanes<Tag> rays = rays_of(d, window, unit, lanes, first);
+        const Vec3v<Tag>&direction = rays.direction, &middle = rays.middle;
+        V<Tag> tau = begin, guess_lo = zero, guess_hi = zero;
+        M<Tag> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
+        V<Tag> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
         for (int step = 0; step < most_steps; ++step) {
             steps += hn::CountTrue(d, hn::Or(walking, guessing));
-            const Vec3v<F> p{hn::MulAdd(tau, direction.x, middle.x),
-                             hn::MulAdd(tau, direction.y, middle.y),
-                             hn::MulAdd(tau, direction.z, middle.z)};
-            const FieldValue<F> value =
-                evaluate(d, window.coarse, window.coarse_count, threshold, p, direction);
+            const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
+                               hn::MulAdd(tau, direction.y, middle.y),
+                               hn::MulAdd(tau, direction.z, middle.z)};
+            const FieldValue<Tag> value =
+                evaluate(d, stage.entries(), stage.counts(), threshold, p, direction);
 
             // A guess follows Newton, kept where the root is known to be.
-            const V<F> newton =
+            const V<Tag> newton =
                 hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), guess_lo), guess_hi);
             guesses = hn::Add(guesses, hn::IfThenElseZero(guessing, c(1)));
-            const M<F> settles =
+            const M<Tag> settles =
                 hn::And(guessing, hn::Or(hn::Le(hn::Abs(hn::Sub(newton, tau)), settled),
-                                         hn::Ge(guesses, c(most_guesses))));
+                                         hn::Ge(guesses, c(S::most_guesses))));
 
             // f(tau) < 0 must be certain for anything else to be.
-            const V<F> f_hi = hn::Add(value.f, above);
-            const V<F> f_lo = hn::Mul(hn::Sub(value.f, below), one_more);
-            const V<F> slope_lo = hn::Sub(value.slope, slope_error);
-            const V<F> slope_hi = hn::Add(value.slope, slope_error);
+            const V<Tag> f_hi = hn::Add(value.f, above);
+            const V<Tag> f_lo = hn::Mul(hn::Sub(value.f, below), one_more);
+            const V<Tag> slope_lo = hn::Sub(value.slope, slope_error);
+            const V<Tag> slope_hi = hn::Add(value.slope, slope_error);
             undecided = hn::Or(undecided, hn::And(walking, hn::Not(hn::Lt(f_hi, zero))));
             walking = hn::AndNot(undecided, walking);
 
             // The parabola below f: with a zero in the window, g rises up to there.
-            const V<F> firm = hn::Mul(slope_lo, one_less);
-            const V<F> below_square = hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
-            const V<F> latest = hn::Mul(
+            const V<Tag> firm = hn::Mul(slope_lo, one_less);
+            const V<Tag> below_square = hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
+            const V<Tag> latest = hn::Mul(
                 hn::Div(hn::Mul(c(-2), f_lo), hn::Add(firm, hn::Sqrt(hn::Max(below_square, zero)))),
                 one_more);
-            const V<F> latest_tau = hn::Add(tau, latest);
-            const M<F> rises =
+            const V<Tag> latest_tau = hn::Add(tau, latest);
+            const M<Tag> rises =
                 hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, zero)),
                                          hn::Le(latest_tau, end)));
 
             // The parabola above f: up to its zero there is no root.
-            const V<F> a = hn::Mul(f_hi, one_less);
-            const V<F> b = hn::MulAdd(hn::Abs(slope_hi), hn::Set(d, tight), slope_hi);
-            const V<F> root = hn::Sqrt(hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
-            const M<F> upward = hn::Gt(b, zero);
-            const V<F> numerator = hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
-            const V<F> denominator = hn::IfThenElse(upward, hn::Add(root, b), rise);
-            const V<F> safe = hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
-            const M<F> steps_on = hn::AndNot(rises, walking);
+            const V<Tag> a = hn::Mul(f_hi, one_less);
+            const V<Tag> b = hn::MulAdd(hn::Abs(slope_hi), hn::Set(d, tight), slope_hi);
+            const V<Tag> root = hn::Sqrt(hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
+            const M<Tag> upward = hn::Gt(b, zero);
+            const V<Tag> numerator = hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
+            const V<Tag> denominator = hn::IfThenElse(upward, hn::Add(root, b), rise);
+            const V<Tag> safe = hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
+            const M<Tag> steps_on = hn::AndNot(rises, walking);
             // Nothing gets on, or a number is lost: not slack < safe < infinity.
-            undecided =
-                hn::Or(undecided,
-                       hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
-            const V<F> next = hn::Add(tau, safe);
+            undecided = hn::Or(
+                undecided,
+                hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(S::huge))), steps_on));
+            const V<Tag> next = hn::Add(tau, safe);
 
             // Lanes change their ways.
             guess_lo = hn::IfThenElse(rises, tau, guess_lo);
             guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
-            const V<F> first_guess =
+            const V<Tag> first_guess =
                 hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau);
             tau = hn::IfThenElse(steps_on, next, tau);
             tau = hn::IfThenElse(guessing, newton, tau);
@@ -236,13 +325,41 @@ std::uint64_t walk(const Window& window, double threshold, double unit, std::siz
             if (hn::AllFalse(d, hn::Or(walking, guessing))) break;
         }
         undecided = hn::Or(undecided, hn::Or(walking, guessing));  // no end of steps
-        state = hn::IfThenElse(hn::RebindMask(di, found), hn::Set(di, Lanes::candidate), state);
-        state = hn::IfThenElse(hn::RebindMask(di, undecided), hn::Set(di, Lanes::undecided), state);
-        hn::StoreU(state, di, &lanes.state[first]);
-        const V<F> guess = hn::LoadU(d, &lanes.guess[first]);
-        hn::StoreU(hn::IfThenElse(found, tau, guess), d, &lanes.guess[first]);
+        if (hn::AllFalse(d, hn::Or(found, undecided)) && S::takes == Lanes::walking) continue;
+        alignas(64) Real at[HWY_MAX_BYTES / sizeof(Real)];
+        hn::Store(tau, d, at);
+        const std::uint64_t taken_bits = bits_of(d, taken), found_bits = bits_of(d, found),
+                            undecided_bits = bits_of(d, undecided);
+        for (std::size_t k = 0; k < N; ++k) {
+            if ((taken_bits >> k & 1) == 0) continue;
+            const bool is_candidate = (found_bits >> k & 1) != 0;
+            lanes.state[first + k] = (undecided_bits >> k & 1) != 0 ? S::leaves
+                                     : is_candidate                 ? Lanes::candidate
+                                                                    : Lanes::walking;
+            lanes.t_lo[first + k] = window.begin;
+            if (is_candidate)
+                lanes.guess[first + k] = window.middle + static_cast<double>(at[k]) * unit;
+        }
     }
     return steps;
+}
+
+std::uint64_t walk(const Window& window, double threshold, double unit, std::size_t first,
+                   std::size_t end, Lanes& lanes) {
+    return walk_stage(F(), Stage<float>{window, unit}, threshold, first, end, lanes);
+}
+
+std::uint64_t walk_again(const Window& window, double threshold, std::size_t first, std::size_t end,
+                         Lanes& lanes) {
+    if (!window.fine_usable) {
+        for (std::size_t k = first; k < end; ++k) {
+            if (lanes.state[k] != Lanes::doubtful) continue;
+            lanes.state[k] = Lanes::undecided;
+            lanes.t_lo[k] = window.begin;
+        }
+        return 0;
+    }
+    return walk_stage(D(), Stage<double>{window}, threshold, first, end, lanes);
 }
 
 constexpr std::size_t widest = 8;  // doubles in a vector of any target
@@ -275,8 +392,8 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
 // f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
 // least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
-std::uint64_t enclose_batch(const Window& window, double threshold, double half_width, Batch& batch,
-                            Lanes& lanes) {
+std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
+                            Lanes::State otherwise, Batch& batch, Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
@@ -308,6 +425,7 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
 
         V<D> m = hn::Load(d, batch.t + first);
         V<D> lo = zero, hi = zero;
+        V<D> outside = c(window.begin);  // f < 0 up to there
         M<D> open = hn::FirstN(d, batch.count - first);
         M<D> done = hn::FirstN(d, 0);
         for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
@@ -335,6 +453,7 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
             const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
             const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
+            outside = hn::IfThenElse(hn::And(open, firm), from, outside);
             const V<D> line = hn::Mul(hn::Floor(hn::Div(from, cell)), cell);
             const V<D> next = hn::Add(line, cell);
             const M<D> decided = hn::And(hn::And(open, firm),
@@ -349,14 +468,14 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             m = hn::IfThenElse(open, hn::Sub(m, hn::Div(value.f, value.slope)), m);
         }
         alignas(64) double lo_out[widest], hi_out[widest];
-        hn::Store(lo, d, lo_out);
+        hn::Store(hn::IfThenElse(done, lo, outside), d, lo_out);
         hn::Store(hi, d, hi_out);
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, done, bits);
         for (std::size_t k = 0; k < N && first + k < batch.count; ++k) {
             const std::uint32_t lane = batch.lane[first + k];
             const bool is_hit = (bits[k / 8] >> (k % 8) & 1) != 0;
-            lanes.state[lane] = is_hit ? Lanes::hit : Lanes::undecided;
+            lanes.state[lane] = is_hit ? Lanes::hit : otherwise;
             lanes.t_lo[lane] = lo_out[k];
             lanes.t_hi[lane] = hi_out[k];
         }
@@ -365,14 +484,15 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
     return steps;
 }
 
-std::uint64_t enclose(const Window& window, double threshold, double unit, double half_width,
-                      std::size_t first, std::size_t end, Lanes& lanes) {
+std::uint64_t enclose(const Window& window, double threshold, double half_width, std::size_t first,
+                      std::size_t end, Lanes::State otherwise, Lanes& lanes) {
     Batch batch;
     std::uint64_t steps = 0;
     for (std::size_t k = first; k < end; ++k) {
         if (lanes.state[k] != Lanes::candidate) continue;
         if (!window.fine_usable) {
-            lanes.state[k] = Lanes::undecided;
+            lanes.state[k] = otherwise;
+            lanes.t_lo[k] = window.begin;
             continue;
         }
         const std::size_t at = batch.count++;
@@ -380,12 +500,13 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
         batch.dx[at] = lanes.dx[k];
         batch.dy[at] = lanes.dy[k];
         batch.dz[at] = lanes.dz[k];
-        batch.t[at] = window.middle + static_cast<double>(lanes.guess[k]) * unit;
+        batch.t[at] = lanes.guess[k];
         if (batch.count == widest) {
-            steps += enclose_batch(window, threshold, half_width, batch, lanes);
+            steps += enclose_batch(window, threshold, half_width, otherwise, batch, lanes);
         }
     }
-    if (batch.count > 0) steps += enclose_batch(window, threshold, half_width, batch, lanes);
+    if (batch.count > 0)
+        steps += enclose_batch(window, threshold, half_width, otherwise, batch, lanes);
     return steps;
 }
 
@@ -480,7 +601,8 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
 }  // namespace
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{prepare, walk, enclose, surface, hwy::TargetName(HWY_TARGET)};
+    static const PacketSteps steps{prepare, walk,    walk_again,
+                                   enclose, surface, hwy::TargetName(HWY_TARGET)};
     return steps;
 }
 

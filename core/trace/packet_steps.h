@@ -25,7 +25,8 @@ struct Lanes {
         walking,    // f < 0 on [0, t) so far
         candidate,  // and, in this window, g rises from there to a root near `guess`
         hit,        // done: t_lo, t_hi
-        undecided,  // to be traced by other means
+        doubtful,   // float cannot decide on what happens in this window
+        undecided,  // to be traced by other means from t_lo on: f < 0 up to there
         unused,
     };
 
@@ -33,7 +34,7 @@ struct Lanes {
     alignas(64) std::array<double, room> dx, dy, dz;  // directions
     alignas(64) std::array<float, room> fx, fy, fz;   // the same, rounded
     alignas(64) std::array<std::int32_t, room> state;
-    alignas(64) std::array<float, room> guess;  // tau
+    alignas(64) std::array<double, room> guess;
     alignas(64) std::array<double, capacity> t_lo, t_hi;
 };
 
@@ -47,11 +48,17 @@ struct PacketSteps {
     std::uint64_t (*walk)(const Window& window, double threshold, double unit, std::size_t first,
                           std::size_t end, Lanes& lanes);
 
+    // The same in double, from the window's begin, for the doubtful ones: they become candidates,
+    // walk on or are undecided.
+    std::uint64_t (*walk_again)(const Window& window, double threshold, std::size_t first,
+                                std::size_t end, Lanes& lanes);
+
     // Encloses the candidates' roots, of lanes first .. end, in double, on the grid whose cell is
     // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
-    // become hits, or undecided.
-    std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
-                             std::size_t first, std::size_t end, Lanes& lanes);
+    // become hits, or `otherwise`.
+    std::uint64_t (*enclose)(const Window& window, double threshold, double half_width,
+                             std::size_t first, std::size_t end, Lanes::State otherwise,
+                             Lanes& lanes);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.

@@ -31,15 +31,17 @@ double greatest_cell(const Field& field, double tolerance) {
     return 0.5 * std::min(tolerance, 0x1p-20) * field.least_width;
 }
 
-}  // namespace
-
-Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
-                          const MethodOptions& options, Counts& counts) const {
+// f < 0 certainly holds on [0, outside_until).
+Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
+                       const Ray& ray, const MethodOptions& options, Counts& counts) {
     // 1. The ray, scaled, as far as it is in the bounding box.
     const Search search = begin_search(field, list, ray, options);
     if (search.over()) return search.answer;
     const ScaledRay& scaled_ray = search.ray;
-    const Interval<double>& span = search.span;
+    const double least = std::ldexp(outside_until, -scaled_ray.shift) * (1 - 4 * unit_roundoff);
+    const Interval<double> span =
+        intersection(search.span, Interval<double>(least, infinity<double>));
+    if (is_empty(span)) return {Status::miss, span};
 
     // 2. The field along it. A miss already where the peaks do not add up to T.
     thread_local FieldAlongRay along;
@@ -73,6 +75,13 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
     return isolation;
 }
 
+}  // namespace
+
+Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
+                          const MethodOptions& options, Counts& counts) const {
+    return isolate_from(0, field, list, ray, options, counts);
+}
+
 void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                           const MethodOptions& options, std::span<Isolation> isolations,
                           std::span<SurfacePoint> surfaces, Counts& counts) const {
@@ -85,7 +94,8 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
         if (isolations[k].status == Status::unresolved) {
-            isolations[k] = isolate(field, list, rays.ray(k), options, counts);
+            isolations[k] =
+                isolate_from(isolations[k].t.lo, field, list, rays.ray(k), options, counts);
         }
         if (surfaces.empty() || isolations[k].status == Status::miss ||
             !std::isnan(surfaces[k].normal.x)) {

@@ -225,7 +225,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     window.coarse_count[0] = 1;
     window.coarse_usable = true;
     packet_steps().walk(window, 1, 1, 0, 1, *lanes);
-    EXPECT_EQ(lanes->state[0], Lanes::undecided);
+    EXPECT_EQ(lanes->state[0], Lanes::doubtful);
 }
 
 // Large strengths that cancel, beside an element so thin that windows may become very short: the
