@@ -127,8 +127,9 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     }
     EXPECT_EQ(hits > 0, c.hits);
     EXPECT_GT(judged, 0);
-    // Packets see a far ray relative to its window: near the end of double they tell more signs.
-    EXPECT_LE(wider, c.tolerance < 1e-11 ? hits / 20 : hits / 500);
+    // Packets see a far ray relative to its window: near the end of double, and where the field
+    // hardly rises through T, they tell more signs.
+    EXPECT_LE(wider, c.tolerance < 1e-11 || c.recipe.critical ? hits / 20 : hits / 500);
     EXPECT_GE(decided, c.least_decided * rays_traced);
     std::printf("%d rays, %d decided by packets, %d hits, %d judged by the reference; %s\n",
                 rays_traced, decided, hits, judged, std::string(packet_target()).c_str());
