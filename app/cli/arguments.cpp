@@ -15,8 +15,8 @@
 namespace ivory {
 namespace {
 
-constexpr int largest_side = 32768;               // pixels
-constexpr long largest_picture = 1L << 28;        // pixels; 21 bytes each
+constexpr int largest_side = 32768;         // pixels
+constexpr long largest_picture = 1L << 28;  // pixels; 21 bytes each
 constexpr int most_threads = 1024;
 constexpr int most_repeats = 1000000;
 constexpr double least_tolerance = 1e-15, greatest_tolerance = 0.1;
@@ -47,8 +47,8 @@ void read_size(std::string_view text, int& width, int& height) {
                       read(text.substr(cross + 1), height);
     if (!both || width < 1 || height < 1 || width > largest_side || height > largest_side) {
         throw wrong_value("--size", text,
-                          "WIDTHxHEIGHT in pixels, each from 1 to " +
-                              std::to_string(largest_side) + ", as 1280x720");
+                          "WIDTHxHEIGHT in pixels, each from 1 to " + std::to_string(largest_side) +
+                              ", as 1280x720");
     }
     if (static_cast<long>(width) * height > largest_picture) {
         throw wrong_value("--size", text,
@@ -98,17 +98,25 @@ void add_work_options(CLI::App& call, WorkArguments& work, const std::string& to
     add_value(call, "--method", "NAME",
               "how rays are intersected; `ivory info --methods` lists them; default proved",
               [&work](const std::string& text) { work.method = read_method(text); });
-    add_value(call, "--delta", "D",
-              "step of the central differences that some methods take for the normal, in units of "
-              "the least width; default 1e-5",
-              [&work](const std::string& text) {
-                  work.options.difference_delta = read_delta(text);
-              });
+    add_value(
+        call, "--delta", "D",
+        "step of the central differences that some methods take for the normal, in units of "
+        "the least width; default 1e-5",
+        [&work](const std::string& text) { work.options.difference_delta = read_delta(text); });
     add_value(call, "--threads", "N", "worker threads; default: one for each processor",
               [&work](const std::string& text) {
                   work.threads = read_count("--threads", text, most_threads);
               });
     call.add_flag("--quiet", work.quiet, "no progress on standard error");
+}
+
+bool Skipping::*read_skipping(std::string_view text) {
+    std::vector<std::string_view> names;
+    for (const SkippingName& kind : skipping_names) {
+        if (kind.name == text) return kind.member;
+        names.push_back(kind.name);
+    }
+    throw wrong_value("--without", text, "a kind of skipping; take " + listed(names, "or"));
 }
 
 void add_render_options(CLI::App& call, RenderArguments& render) {
@@ -128,6 +136,17 @@ void add_render_options(CLI::App& call, RenderArguments& render) {
               [&render](const std::string& text) {
                   render.repeat = read_count("--repeat", text, most_repeats);
               });
+    call.add_option_function<std::vector<std::string>>(
+            "--without",
+            [&render](const std::vector<std::string>& kinds) {
+                for (const std::string& kind : kinds) {
+                    render.work.options.skipping.*read_skipping(kind) = false;
+                }
+            },
+            "turns a kind of skipping off, to see what it saves: lists, windows, parts, coarse "
+            "(float before double) or packets; several with commas")
+        ->delimiter(',')
+        ->type_name("KIND");
     add_work_options(call, render.work, "1e-6");
 }
 
@@ -156,7 +175,8 @@ void add_viewer_options(CLI::App& app, ViewerArguments& viewer) {
                    "with --headless: what a person does, one JSON object a line; - for standard "
                    "input; default: wait until the picture is final")
         ->type_name("FILE");
-    app.add_option("--screenshot", viewer.screenshot, "with --headless: the whole window at the end")
+    app.add_option("--screenshot", viewer.screenshot,
+                   "with --headless: the whole window at the end")
         ->type_name("OUT.png");
     add_value(app, "--size", "WxH", "of the window in pixels; default 1280x720",
               [&viewer](const std::string& text) { read_size(text, viewer.width, viewer.height); });
@@ -189,15 +209,17 @@ void check(const RenderArguments& render) {
         }
     }
     if (!any) {
-        throw UsageError("nowhere to write to; name the picture with -o OUT.png, or --depth, "
-                         "--answers or --stats");
+        throw UsageError(
+            "nowhere to write to; name the picture with -o OUT.png, or --depth, "
+            "--answers or --stats");
     }
 }
 
 void check(const TraceArguments& trace) {
     if (trace.scene == "-" && trace.rays == "-") {
-        throw UsageError("standard input cannot be scene and rays at once; name a file with --rays "
-                         "or for the scene");
+        throw UsageError(
+            "standard input cannot be scene and rays at once; name a file with --rays "
+            "or for the scene");
     }
 }
 
@@ -243,9 +265,9 @@ Arguments parse_arguments(int count, const char* const* words) {
     add_viewer_options(app, viewer);
     CLI::App& render_call =
         *app.add_subcommand("render", "Draws a picture, without a display or OpenGL.");
-    CLI::App& trace_call = *app.add_subcommand(
-        "trace", "Traces rays: after the line " + std::string(answer_columns) +
-                     " one answer a line on standard output.");
+    CLI::App& trace_call =
+        *app.add_subcommand("trace", "Traces rays: after the line " + std::string(answer_columns) +
+                                         " one answer a line on standard output.");
     CLI::App& info_call = *app.add_subcommand(
         "info", "What a scene holds: elements, box, camera, what is skipped and why.");
     add_render_options(render_call, render);

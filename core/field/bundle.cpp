@@ -28,8 +28,10 @@ constexpr std::size_t parts_elements = 12;
 }  // namespace
 
 bool BundleField::build(const Field& field, const ElementList& list, const Bundle& bundle,
-                        double tolerance) {
+                        double tolerance, bool skips_windows) {
     field_ = &field;
+    skips_windows_ = skips_windows;
+    stretches_ = stretches_ended_ = 0;
     origin_ = bundle.origin;
     span_ = Interval<double>::empty_set();
     if (!field.compact || !(bundle.spread <= 0.5)) return false;
@@ -105,7 +107,11 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         ((parent != nullptr ? parent->rest_below : rest_below_) + peaks.rest_below) * sums;
     const double slack =
         static_cast<double>(here.active.size() + 4) * 0x1p-52 * (peaks.magnitude + threshold_);
-    if (peaks.above + here.rest_above + slack < threshold_) return false;
+    ++stretches_;
+    if (skips_windows_ && peaks.above + here.rest_above + slack < threshold_) {
+        ++stretches_ended_;
+        return false;
+    }
 
     const BendSums bends = steps.bend(*field_, on, scale_, here.active);
     here.rise = bends.rise * (1 + 0x1p-30);

@@ -97,9 +97,10 @@ struct Window {
 class BundleField {
   public:
     // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
-    // be left out. False: numbers beyond what the bounds are proved for; nothing else may be
-    // called.
-    bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance);
+    // be left out; unless it `skips_windows`, none ends by the sum of peaks. False: numbers beyond
+    // what the bounds are proved for; nothing else may be called.
+    bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
+               bool skips_windows = true);
 
     // The t outside of which every ray is outside of the field's box, and so f < 0; empty: a miss.
     [[nodiscard]] Interval<double> span() const { return span_; }
@@ -119,6 +120,10 @@ class BundleField {
 
     // The fine stage of the window that is being visited.
     void complete(Window& window);
+
+    // Bounded since `build`, and how many of them were ended by the sum of peaks.
+    [[nodiscard]] std::uint64_t stretches() const { return stretches_; }
+    [[nodiscard]] std::uint64_t stretches_ended() const { return stretches_ended_; }
 
     [[nodiscard]] double unit() const { return unit_; }
     // T, scaled by the power of two that all strengths are scaled by.
@@ -182,6 +187,8 @@ class BundleField {
     double coarse_cut_ = 0, fine_cut_ = 0;
     double rest_above_ = 0, rest_below_ = 0;
     int left_ = 0;  // of the budget
+    bool skips_windows_ = true;
+    std::uint64_t stretches_ = 0, stretches_ended_ = 0;
 };
 
 }  // namespace ivory

@@ -241,7 +241,7 @@ class FrameJob::Work {
         if (step < region_order_.size()) {
             const Clock::time_point start = Clock::now();
             const std::size_t region = region_order_[step];
-            region_lists_[region] = narrowed(all_, regions().rect(region));
+            region_lists_[region] = narrowed(all_, regions().rect(region), tally);
             region_done_[region].store(1, std::memory_order_release);
             tally.tracing += Clock::now() - start;
             return true;
@@ -264,11 +264,14 @@ class FrameJob::Work {
         return true;
     }
 
-    ElementList narrowed(const ElementList& parent, const PixelRect& rect) const {
-        if (parent.certainly_empty) return parent;
+    ElementList narrowed(const ElementList& parent, const PixelRect& rect, Tally& tally) const {
+        if (parent.certainly_empty || !picture_.options.skipping.lists) return parent;
         const Frame& frame = canvas_.frame;
-        return reaching_elements(*picture_.field, parent,
-                                 cone_around(picture_.view, frame.width, frame.height, rect));
+        ElementList list = reaching_elements(
+            *picture_.field, parent, cone_around(picture_.view, frame.width, frame.height, rect));
+        tally.counts.skipping.list_elements += parent.elements.size();
+        tally.counts.skipping.list_left_out += parent.elements.size() - list.elements.size();
+        return list;
     }
 
     bool take_block(std::size_t block, std::size_t pass, Tally& tally) {
@@ -304,7 +307,7 @@ class FrameJob::Work {
         const std::size_t region = region_of(block);
         if (!wait_until(region_done_[region], 1)) return false;
         const Clock::time_point start = Clock::now();
-        block_lists_[block] = narrowed(region_lists_[region], rect);
+        block_lists_[block] = narrowed(region_lists_[region], rect, tally);
         tally.tracing += Clock::now() - start;
         return true;
     }
@@ -319,7 +322,7 @@ class FrameJob::Work {
         if (first) {
             if (!tile.has_list) {
                 const Clock::time_point start = Clock::now();
-                tile.list = narrowed(block_lists_[block], tiles().rect(index));
+                tile.list = narrowed(block_lists_[block], tiles().rect(index), tally);
                 tile.has_list = true;
                 tally.tracing += Clock::now() - start;
             }
@@ -390,6 +393,7 @@ class FrameJob::Work {
         for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
             again[k] = infinity<double>;
             if (isolations[k].status != Status::unresolved) continue;
+            ++tally.counts.skipping.rays_alone;
             isolations[k] = picture_.method->isolate(field, all_, traced.rays.ray(k),
                                                      picture_.options, tally.counts);
             if (surfaces.empty() || !possibly_hit(isolations[k].status)) continue;

@@ -56,6 +56,20 @@ std::string statistics_json(const RenderStatistics& s) {
     json["elements"] = {
         {"total", s.elements}, {"visible", s.visible_elements}, {"reached", s.reached_elements}};
     json["tiles"] = {{"total", s.pixels.tiles}, {"empty", s.pixels.empty_tiles}};
+    const SkippingCounts& skipping = s.counts.skipping;
+    json["skipping"] = {
+        {"off", Json::array()},
+        {"list_elements",
+         {{"tested", skipping.list_elements}, {"left_out", skipping.list_left_out}}},
+        {"stretches", {{"bounded", skipping.stretches}, {"ended", skipping.stretches_ended}}},
+        {"windows", skipping.windows},
+        {"rays",
+         {{"in_packets", skipping.rays},
+          {"doubtful_in_float", skipping.rays_doubtful},
+          {"alone", skipping.rays_alone}}}};
+    for (const SkippingName& kind : skipping_names) {
+        if (!(s.options.skipping.*kind.member)) json["skipping"]["off"].push_back(kind.name);
+    }
     json["enclosure_width_max"] = s.pixels.enclosure_width_max;
     json["unresolved_width_max"] = s.pixels.unresolved_width_max;
     return json.dump(2) + "\n";

@@ -23,13 +23,13 @@ double exact_limit(const Field& field, const Bundle& bundle) {
 
 }  // namespace
 
-void PacketTracer::take(const RayBundle& rays) {
+void PacketTracer::take(const RayBundle& rays, bool in_parts) {
     lanes_.count = rays.count;
     std::copy_n(rays.dx.begin(), rays.count, lanes_.dx.begin());
     std::copy_n(rays.dy.begin(), rays.count, lanes_.dy.begin());
     std::copy_n(rays.dz.begin(), rays.count, lanes_.dz.begin());
 
-    if (rays.part_count > 0) {
+    if (rays.part_count > 0 && in_parts) {
         parts_.assign(rays.parts.begin(), rays.parts.begin() + rays.part_count);
     } else {
         parts_.assign(1, {.axis = rays.bundle.axis, .spread = rays.bundle.spread});
@@ -61,13 +61,15 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                            std::span<SurfacePoint> surfaces, Counts& counts) {
     for (SurfacePoint& surface : surfaces) surface.normal = {nan, nan, nan};
     const Interval<double> nothing = Interval<double>::empty_set();
-    if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance)) {
+    if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
+                             settings.skipping.windows)) {
         std::fill(isolations.begin(), isolations.end(),
                   Isolation{Status::unresolved, {0.0, infinity<double>}});
         return;
     }
     const PacketSteps& steps = packet_steps();
-    take(rays);
+    take(rays, settings.skipping.parts);
+    counts.skipping.rays += rays.count;
     steps.prepare(lanes_);
     const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
     const double limit = exact_limit(field, rays.bundle);
@@ -89,6 +91,11 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                 }
                 return any(all, Lanes::walking);
             }
+            ++counts.skipping.windows;
+            if (!settings.skipping.coarse) {
+                std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                             std::int32_t{Lanes::walking}, std::int32_t{Lanes::doubtful});
+            }
             const std::uint64_t walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
             counts.evaluations += walked;
             counts.element_evaluations += walked * window.coarse.size();
@@ -102,6 +109,9 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             };
             std::uint64_t fine = enclose(Lanes::doubtful);
             if (any(part, Lanes::doubtful)) {
+                counts.skipping.rays_doubtful += static_cast<std::uint64_t>(
+                    std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                               std::int32_t{Lanes::doubtful}));
                 fine += steps.walk_again(window, T, part.first, part.end, lanes_);
                 fine += enclose(Lanes::undecided);
             }
@@ -116,6 +126,8 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             }
             return any(all, Lanes::walking);
         });
+    counts.skipping.stretches += bundle_field_.stretches();
+    counts.skipping.stretches_ended += bundle_field_.stretches_ended();
     for (std::size_t k = 0; k < rays.count; ++k) {
         switch (lanes_.state[k]) {
             case Lanes::walking:
@@ -137,7 +149,7 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         if (std::isfinite(m[k])) surfaces[k].normal = {nan, nan, nan};
     }
     if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
-    take(rays);
+    take(rays, true);
     const double limit = exact_limit(field, rays.bundle);
     bundle_field_.for_windows(
         parts_,

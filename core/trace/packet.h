@@ -28,6 +28,7 @@ class PacketTracer {
     struct Settings {
         double tolerance;      // E
         double greatest_cell;  // of the grid, a length
+        Skipping skipping = {};
     };
 
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
@@ -43,7 +44,7 @@ class PacketTracer {
                  double tolerance, std::span<const double> m, std::span<SurfacePoint> surfaces);
 
   private:
-    void take(const RayBundle& rays);
+    void take(const RayBundle& rays, bool in_parts);
     template <class Midpoint>
     void surface_in(const Window& window, const BundlePart& part, const Field& field, double limit,
                     std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of);

@@ -5,6 +5,7 @@
 
 #include "core/interval/interval.h"
 #include "core/math/vec3.h"
+#include "core/trace/skipping.h"
 
 namespace ivory {
 
@@ -43,10 +44,12 @@ struct Answer {
 struct Counts {
     std::uint64_t evaluations = 0;          // pairs of a ray and an interval that were enclosed
     std::uint64_t element_evaluations = 0;  // elements enclosed in them
+    SkippingCounts skipping = {};
 
     Counts& operator+=(const Counts& other) {
         evaluations += other.evaluations;
         element_evaluations += other.element_evaluations;
+        skipping += other.skipping;
         return *this;
     }
 };

@@ -8,6 +8,7 @@
 #include "core/field/support.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
+#include "core/trace/skipping.h"
 
 namespace ivory {
 
@@ -15,6 +16,7 @@ struct MethodOptions {
     double tolerance = 1e-9;  // E, 1e-15 .. 0.1: widths in units of the nearest element's width
     double difference_delta =
         1e-5;  // central differences of the paper's normal, in units of the least width
+    Skipping skipping = {};  // `lists` of the renderer, all others of `proved`
 };
 
 class Method {

@@ -85,8 +85,13 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
 void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                           const MethodOptions& options, std::span<Isolation> isolations,
                           std::span<SurfacePoint> surfaces, Counts& counts) const {
-    const PacketTracer::Settings settings{options.tolerance,
-                                          greatest_cell(field, options.tolerance)};
+    if (!options.skipping.packets) {
+        counts.skipping.rays_alone += rays.size();
+        Method::trace_bundle(field, list, rays, options, isolations, surfaces, counts);
+        return;
+    }
+    const PacketTracer::Settings settings{
+        options.tolerance, greatest_cell(field, options.tolerance), options.skipping};
     thread_local PacketTracer packets;
     packets.isolate(field, list, rays, settings, isolations, surfaces, counts);
     std::array<double, RayBundle::capacity> m;
@@ -94,6 +99,7 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
         if (isolations[k].status == Status::unresolved) {
+            ++counts.skipping.rays_alone;
             isolations[k] =
                 isolate_from(isolations[k].t.lo, field, list, rays.ray(k), options, counts);
         }

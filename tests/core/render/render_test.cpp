@@ -279,8 +279,8 @@ TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
         }
         for (int side = 16; side <= 64; side *= 2)
             EXPECT_EQ(std::count(squares.begin(), squares.end(), side) > 0, side <= first_square);
-        EXPECT_EQ(begun.size(), static_cast<std::size_t>(std::count(
-                                    settings.selected.begin(), settings.selected.end(), 1)));
+        EXPECT_EQ(begun.size(), static_cast<std::size_t>(std::count(settings.selected.begin(),
+                                                                    settings.selected.end(), 1)));
     }
 }
 
@@ -469,6 +469,47 @@ TEST(Render, StatisticsCountEveryPixelOnce) {
     EXPECT_LE(report.elements_reached, 6u);  // one of the seven is invisible
     EXPECT_GE(report.shade_share, 0);
     EXPECT_LE(report.shade_share, 1);
+}
+
+// No hit becomes a miss without a kind of skipping, nor the reverse, and the statistics tell that
+// it was off.
+TEST(Render, NoAnswerRestsOnWhatIsSkipped) {
+    Scene scene = mixed_scene();
+    for (int i = 0; i < 12; ++i) {  // enough for lists of their own in a tile's parts
+        scene.elements.push_back(
+            {.skeleton = PointSkeleton{{-1.2 + 0.2 * i, -0.9, 0.3}}, .width = 0.2});
+    }
+    JobSettings settings;
+    settings.threads = 2;
+    Canvas usual(frame_width, frame_height, false);
+    const JobReport all = render(picture_of(scene), usual, settings);
+    EXPECT_GT(all.counts.skipping.list_left_out, 0u);
+    EXPECT_GT(all.counts.skipping.stretches_ended, 0u);
+    EXPECT_GT(all.counts.skipping.rays, 0u);
+    for (const SkippingName& kind : skipping_names) {
+        SCOPED_TRACE(kind.name);
+        Picture picture = picture_of(scene);
+        picture.options.skipping.*kind.member = false;
+        Canvas canvas(frame_width, frame_height, false);
+        const SkippingCounts counts = render(picture, canvas, settings).counts.skipping;
+        int hits = 0;
+        for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+            ASSERT_EQ(canvas.frame.status[p], usual.frame.status[p]);
+            if (canvas.frame.status[p] != Status::hit) continue;
+            ++hits;
+            ASSERT_FALSE(is_empty(intersection(canvas.frame.t(p), usual.frame.t(p))));
+        }
+        EXPECT_GT(hits, 1000);
+        EXPECT_EQ(counts.list_elements == 0, kind.name == "lists");
+        EXPECT_EQ(counts.stretches_ended == 0, kind.name == "windows" || kind.name == "packets");
+        EXPECT_EQ(counts.rays == 0, kind.name == "packets");
+        if (kind.name == "parts") {
+            EXPECT_LT(counts.stretches, all.counts.skipping.stretches);
+        }
+        if (kind.name == "coarse") {
+            EXPECT_GT(counts.rays_doubtful, counts.rays / 2);
+        }
+    }
 }
 
 TEST(Render, AnEmptySceneIsAllBackground) {
