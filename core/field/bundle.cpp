@@ -18,7 +18,6 @@ constexpr double coarse_cut_share = 0x1p-26, fine_cut_share = 0x1p-40;
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.
 constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
-constexpr std::size_t greatest_depth = 30;
 
 // A window is made for each part of the rays where they are farther apart than this share of its
 // length, and so many elements matter that shorter lists pay.
@@ -112,18 +111,21 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         ++stretches_ended_;
         return false;
     }
+    return true;
+}
 
-    const BendSums bends = steps.bend(*field_, on, scale_, here.active);
+void BundleField::bend(std::size_t depth, const BundlePart& part, double t0, double t1) {
+    Bounded& here = bounded_by_depth_[depth];
+    const BendSums bends = bundle_steps().bend(*field_, stretch(part, t0, t1), scale_, here.active);
     here.rise = bends.rise * (1 + 0x1p-30);
     here.fall = bends.fall * (1 + 0x1p-30);
     here.kinks = bends.kinks;
-    return true;
 }
 
 bool BundleField::splits(std::size_t depth, double t0, double t1) const {
     const Bounded& here = bounded_by_depth_[depth];
     const double L = t1 - t0;
-    return depth < greatest_depth && L > least_length * least_width_ &&
+    return L > least_length * least_width_ &&
            (std::max(here.rise, here.fall) * L * L > bend_limit * threshold_ ||
             here.kinks * L > kink_limit * threshold_);
 }

@@ -130,6 +130,10 @@ class BundleField {
     [[nodiscard]] double threshold() const { return threshold_; }
 
   private:
+    static constexpr std::size_t greatest_depth = 30;
+    // Of the greatest width, or nearly: longer stretches are halved before anything else is asked.
+    static constexpr double long_stretch = 4;
+
     // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
         ActiveElements active;
@@ -141,6 +145,7 @@ class BundleField {
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     // False: f < 0 on all of [t0, t1] for every ray.
     bool bound(std::size_t depth, const BundlePart& part, double t0, double t1);
+    void bend(std::size_t depth, const BundlePart& part, double t0, double t1);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
     [[nodiscard]] bool parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                     double t1) const;
@@ -160,7 +165,10 @@ class BundleField {
         }
         if (!bound(depth, part, t0 - pad, t1 + pad)) return true;
         const double middle = 0.5 * (t0 + t1);
-        if (middle > t0 && middle < t1 && splits(depth, t0, t1)) {
+        const bool divisible = middle > t0 && middle < t1 && depth < greatest_depth;
+        const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
+        if (!is_long) bend(depth, part, t0 - pad, t1 + pad);
+        if (is_long || (divisible && splits(depth, t0, t1))) {
             return descend(depth + 1, part, t0, middle, wanted, visit) &&
                    descend(depth + 1, part, middle, t1, wanted, visit);
         }

@@ -150,19 +150,16 @@ struct FromAxis {
         across_square = dot<D>(across, across);
     }
 
-    // Its least and its greatest distance from the axis' points of a stretch.
+    // Its least distance from the axis' points of a stretch.
     HWY_INLINE V<D> nearest(double begin, double end) const {
         const V<D> before = hn::Sub(constant(begin), along), after = hn::Sub(along, constant(end));
         return hn::Sqrt(hn::Add(across_square, square_of(at_least_0(hn::Max(before, after)))));
     }
-    HWY_INLINE V<D> farthest(double begin, double end) const {
-        const V<D> before = hn::Sub(along, constant(begin)), after = hn::Sub(constant(end), along);
-        return hn::Sqrt(hn::Add(across_square, square_of(hn::Max(before, after))));
-    }
 };
 
 struct DistanceRange {
-    V<D> near, far;
+    V<D> near;
+    V<D> far;  // not of points: nobody asks
 };
 
 // A lower and an upper bound of the distances between the skeletons and the stretch's points. These
@@ -176,9 +173,7 @@ HWY_INLINE DistanceRange distances(const Seen<shape>& e, const Stretch& s, V<D> 
     const V<D> off = hn::Add(aside, error);
     if constexpr (shape == Shape::point) {
         const FromAxis c(e.v, s.axis);
-        return {
-            at_least_0(hn::Sub(c.nearest(s.begin, s.end), off)),
-            hn::Add(hn::Add(c.farthest(s.begin, s.end), constant(s.end * s.spread * more)), error)};
+        return {at_least_0(hn::Sub(c.nearest(s.begin, s.end), off)), hn::Zero(D())};
     } else {
         const double L = (s.end - s.begin) * more;
         const V<D> d0 = e.distance(s.axis, s.begin), d1 = e.distance(s.axis, s.end);
@@ -240,7 +235,6 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         const DistanceRange range = distances(e, stretch, error_of(e.far, stretch));
         const V<D> least =
             hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), constant(less));
-        const V<D> most = hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), constant(more));
         const V<D> peak = peak_of<kind>(least);
         const V<D> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), constant(more));
         const M<D> adds = hn::Gt(e.strength, zero);
@@ -255,7 +249,11 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         const std::size_t more_of_them =
             hn::CompressStore(index, hn::RebindMask(di, keep), di, &kept.element[count]);
         hn::CompressStore(least, keep, d, &kept.least[count]);
-        hn::CompressStore(most, keep, d, &kept.most[count]);
+        if constexpr (shape != Shape::point) {
+            const V<D> most =
+                hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), constant(more));
+            hn::CompressStore(most, keep, d, &kept.most[count]);
+        }
         hn::CompressStore(peak, keep, d, &kept.peak[count]);
         count += more_of_them;
     }

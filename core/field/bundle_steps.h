@@ -32,9 +32,10 @@ struct ActiveElements {
     std::array<std::uint32_t, field_groups + 1> first{};  // of each group; the last: how many
     // Indices into Field. Vectors are read whole, beyond the last element too: 0 stands there.
     std::vector<std::int64_t> element;
-    std::vector<double> least, most;  // bounds of s on the stretch
-    std::vector<double> peak;         // upper bound of k
-    std::vector<double> inverse;      // circle: upper bound of 1 / rho; < 0: rho may be 0
+    std::vector<double> least;    // lower bound of s on the stretch
+    std::vector<double> most;     // upper bound of s, but for points
+    std::vector<double> peak;     // upper bound of k
+    std::vector<double> inverse;  // after `bend`; circle: upper bound of 1 / rho; < 0: rho may be 0
 
     static constexpr std::size_t room = 16;
 
