@@ -20,9 +20,8 @@ constexpr double coarse_cut_share = 0x1p-26, fine_cut_share = 0x1p-40;
 constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 
 // A window is made for each part of the rays where they are farther apart than this share of its
-// length, and so many elements matter that shorter lists pay.
+// length.
 constexpr double parts_apart = 1;
-constexpr std::size_t parts_elements = 12;
 
 }  // namespace
 

@@ -96,6 +96,9 @@ struct Window {
 // The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
 class BundleField {
   public:
+    // Where fewer elements matter, shorter lists for parts of the rays do not pay.
+    static constexpr std::size_t parts_elements = 12;
+
     // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
     // be left out; unless it `skips_windows`, none ends by the sum of peaks. False: numbers beyond
     // what the bounds are proved for; nothing else may be called.

@@ -64,9 +64,6 @@ std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
 bool on_stride(int i, int j, int stride) { return i % stride == 0 && j % stride == 0; }
 int first_on(int stride, int from) { return (from + stride - 1) / stride * stride; }
 
-// With fewer elements a tile's rays need no lists of their own.
-constexpr std::size_t parts_pay_from = 12;
-
 // Calls visit(square) for the squares of that side that a rectangle of twice the side consists of.
 template <class Visit>
 void for_quarters(const PixelRect& rect, int side, const Visit& visit) {
@@ -417,7 +414,8 @@ class FrameJob::Work {
         const PixelRect rect = tiles().rect(index);
         RayBundle& rays = traced.rays;
         rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
-        const bool in_parts = canvas_.tiles[index].list.elements.size() >= parts_pay_from;
+        const bool in_parts =
+            canvas_.tiles[index].list.elements.size() >= BundleField::parts_elements;
         if (in_parts) {
             rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
             rays.parts[0].first_part = 1;

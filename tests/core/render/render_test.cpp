@@ -13,11 +13,13 @@
 #include <new>
 #include <numeric>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "core/render/statistics.h"
 #include "core/trace/trace.h"
+#include "tests/tools/random_scene.h"
 
 namespace ivory {
 namespace {
@@ -119,6 +121,46 @@ TEST(Render, PixelsAreTheAnswersOfTheirRays) {
         EXPECT_GT(roots, canvas.frame.size() / 10);
         EXPECT_LT(roots, canvas.frame.size() / 2);
     }
+}
+
+// Of many elements, so that lists are cut and parts of tiles have windows of their own: each pixel
+// is answered as its ray alone is against all elements.
+TEST(Render, CrowdedPicturesAreTheAnswersOfTheirRays) {
+    constexpr int side = 64;
+    std::uint64_t left_out = 0, shorter = 0;
+    int hits = 0, misses = 0;
+    for (std::uint64_t seed = 21; seed < 27; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Scene scene = tools::random_scene({.elements = 80}, seed);
+        scene.camera = Camera{{0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 35};
+        Picture picture = picture_of(scene, "proved", side, side);
+        const ElementList all = all_elements(*picture.field);
+        Canvas canvas(side, side, false);
+        const SkippingCounts counts = render(picture, canvas, {}).counts.skipping;
+        left_out += counts.list_left_out;
+        for (int j = 0; j < side; j += 3) {
+            for (int i = 0; i < side; ++i) {
+                const Ray ray = primary_ray(picture.view, side, side, i, j);
+                Counts alone_counts;
+                const Isolation alone = picture.method->isolate(*picture.field, all, ray,
+                                                                picture.options, alone_counts);
+                const std::size_t p = canvas.frame.at(i, j);
+                const Status found = canvas.frame.status[p];
+                if (alone.status == Status::unresolved || found == Status::unresolved) continue;
+                ASSERT_EQ(found, alone.status) << i << ", " << j;
+                ++(found == Status::hit ? hits : misses);
+                if (found == Status::miss) continue;
+                ASSERT_FALSE(is_empty(intersection(canvas.frame.t(p), alone.t))) << i << ", " << j;
+            }
+        }
+        picture.options.skipping.parts = false;
+        Canvas whole(side, side, false);
+        shorter += render(picture, whole, {}).counts.skipping.stretches != counts.stretches;
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_GT(misses, 500);
+    EXPECT_GT(left_out, 0u);
+    EXPECT_GT(shorter, 0u);
 }
 
 TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
