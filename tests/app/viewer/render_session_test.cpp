@@ -236,7 +236,8 @@ TEST_F(Session, ACompletePictureIsShownThoughTheNextHasBegun) {
 }
 
 TEST_F(Session, AnEditCancelsRefinement) {
-    constexpr WindowSize large{900, 700};
+    // so large that it is far from done when its first picture is
+    constexpr WindowSize large{3000, 2400};
     show(with_left_blob_at(-1.2), camera(), large);
     ASSERT_TRUE(wait_first());
     Camera other = camera();
