@@ -178,9 +178,9 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     w.coarse_bounds = stage_bounds(sums, 0x1p-24, w.coarse.size(), here.active.size(), threshold_,
                                    here.rest_above, here.rest_below, unit_, 1e-30);
     // No product of the walk's formulas comes near the end of float.
-    const double bend = (sums.magnitude + threshold_) * std::max(w.rise, w.fall) * unit_ * unit_;
-    w.coarse_usable = sums.usable && bend < 1e30 && sums.full_slope * unit_ < 1e14 &&
-                      w.coarse_bounds.slope < 1e14;
+    const double size = (sums.magnitude + threshold_) * unit_ * unit_;
+    w.coarse_usable = sums.usable && size * w.rise < 1e30 && size * w.fall < 1e30 &&
+                      sums.full_slope * unit_ < 1e14 && w.coarse_bounds.slope < 1e14;
 }
 
 void BundleField::complete(Window& w) {

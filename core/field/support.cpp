@@ -17,12 +17,15 @@ ElementList all_elements(const Field& field) {
     return list;
 }
 
-// The rays of a cone as core/field/bundle_steps.h wants them: two unit vectors an angle a <= 30
-// degrees apart have ends 2 sin(a / 2) apart, at most 1.036 sin a. What they are parametrized by
-// does not matter to distances; beyond its far end an element only gets farther away.
+// Two unit vectors an angle a <= 30 degrees apart have ends 2 sin(a / 2) apart, at most 1.036 sin
+// a. The axis' own rounding to length 1 is far below the rest of the margin.
+double spread_of(const Cone& cone) { return cone.sine <= 0.45 ? 1.04 * cone.sine + 0x1p-48 : 1; }
+
+// What the rays are parametrized by does not matter to distances; beyond its far end an element
+// only gets farther away.
 ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone) {
     const Vec3d& o = cone.apex;
-    const bool bounded = field.compact && cone.sine <= 0.45 &&
+    const bool bounded = field.compact && spread_of(cone) <= 0.5 &&
                          std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
     if (parent.certainly_empty || parent.elements.empty() || !bounded) return parent;
 
@@ -33,7 +36,7 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
         far += std::max(std::abs(field.skeletons.lo[k] - o[k]),
                         std::abs(field.skeletons.hi[k] - o[k]));
     }
-    const Stretch rays{o, unit(cone.axis), 1.04 * cone.sine + 0x1p-48, 0, far * (1 + 0x1p-46)};
+    const Stretch rays{o, unit(cone.axis), spread_of(cone), 0, far * (1 + 0x1p-46)};
     // Each element is dropped once, whatever the number of lists between: all together stay below
     // 2^-52 T.
     const double share = field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));

@@ -27,10 +27,15 @@ struct Cone {
     double sine = 0;  // rounded up; > 1: every direction
 };
 
+// No unit vector of the cone ends farther than this from that along its axis; above 1/2 where the
+// cone is too wide for core/field/bundle.h.
+[[nodiscard]] double spread_of(const Cone& cone);
+
 [[nodiscard]] ElementList all_elements(const Field& field);
 
 // The elements of `parent` that matter on the cone's rays; the others move into `rest`.
-// `parent` has to be valid on these rays. The result depends on the arguments alone.
+// `parent` has to be valid on these rays. The result depends on the arguments alone; it is `parent`
+// itself where the cone is too wide for bounds, or the field not compact.
 [[nodiscard]] ElementList reaching_elements(const Field& field, const ElementList& parent,
                                             const Cone& cone);
 

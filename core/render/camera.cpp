@@ -131,11 +131,9 @@ Cone cone_around(const View& view, int width, int height, const PixelRect& rect)
     return cone;
 }
 
-// Two unit vectors an angle a <= 30 degrees apart have ends 2 sin(a / 2) apart, at most 1.036 sin
-// a. The axis' own rounding to length 1 is far below the rest of the margin.
 Bundle bundle_around(const View& view, int width, int height, const PixelRect& rect) {
     const Cone cone = cone_around(view, width, height, rect);
-    return {cone.apex, unit(cone.axis), cone.sine <= 0.45 ? 1.04 * cone.sine + 0x1p-48 : 1};
+    return {cone.apex, unit(cone.axis), spread_of(cone)};
 }
 
 }  // namespace ivory

@@ -43,7 +43,7 @@ struct PacketSteps {
     void (*prepare)(Lanes& lanes);
 
     // Safe steps of every walking lane of first .. end from the window's begin to its end, in
-    // float: lanes that come to a root become candidates, those that float cannot decide undecided.
+    // float: lanes that come to a root become candidates, those that float cannot decide doubtful.
     // Counts pairs of a lane and a step.
     std::uint64_t (*walk)(const Window& window, double threshold, double unit, std::size_t first,
                           std::size_t end, Lanes& lanes);
