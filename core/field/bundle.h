@@ -58,7 +58,7 @@ struct BundlePart {
 template <class Real>
 struct BundleEntry {
     Real cx, cy, cz;
-    Real inverse_square;  // 1 / w^2
+    Real inverse_square;  // 1 / w^2, for Blinn's kernel 1 / (w^2 ln 2)
     Real strength;        // b
     Real slope;  // 2 b / w^2: F' = slope k'(s) away . d; 0 where `kinked` counts it instead
     Real mx, my, mz, extra;

@@ -38,7 +38,9 @@ HWY_INLINE V<D> at_least_0(V<D> x) { return hn::Max(x, hn::Zero(D())); }
 template <KernelKind kind>
 HWY_INLINE V<D> peak_of(V<D> s) {
     const D d;
-    const V<D> k = kernel<kind>(d, s).k;
+    // rounded down, the product with s as well
+    constexpr double scale = argument_scale<kind> * (1 - 0x1p-50);
+    const V<D> k = kernel<kind>(d, kind == KernelKind::blinn ? hn::Mul(s, constant(scale)) : s).k;
     if constexpr (kind == KernelKind::blinn) return hn::MulAdd(k, constant(more), constant(1e-300));
     return hn::IfThenElseZero(hn::Lt(s, constant(1)),
                               hn::MulAdd(k, constant(more), constant(0x1p-49)));
@@ -442,13 +444,13 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
 
 // Rounding errors of one entry, with u the unit roundoff of its stage, eta the error of `away` and
 // eta_slope that of its direction, both in widths. Blinn's: the computed s is off by
-//     ds <= 2 sqrt(s) eta + eta^2 + 7 u s,
-// five roundings of the square and one of 1 / w^2; the exponential adds 2 u, so that with
+//     ds <= 2 sqrt(s) eta + eta^2 + 9 u s,
+// five roundings of the square, one of 1 / w^2 and two of 1 / ln 2; 2^-x adds 2 u, so that with
 // e^ds <= 1.02 |dk| <= 1.02 e^-s (ds + 2 u). (For s in the hundreds e^ds is larger, but then
 // e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak (sqrt(least) +
 // c_j)^j with c_j < 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2)
 // e^-y are 0.43, 0.37, 0.41 for j = 1, 2, 3. With r = sqrt(least) + 1 that is at most
-//     |dF|  <= |b| peak (3 eta r + 10 u r^2),
+//     |dF|  <= |b| peak (3 eta r + 13 u r^2),
 //     |dF'| <= 2 |b| / w peak (4 eta_slope r^2 + 40 u r^3),
 // the second from |d(k x)| <= |dk| sqrt(s) + 1.02 k (eta_slope + 5 u sqrt(s)) and four more
 // roundings. The other kernels: |k'| <= 3, |k''| <= 20.25, s <= 1 where k is not 0, and ten
@@ -462,7 +464,7 @@ HWY_INLINE EntryErrors errors_of(double u, V<D> eta, V<D> eta_slope, V<D> least,
     if constexpr (kind == KernelKind::blinn) {
         const V<D> r = hn::Add(hn::Sqrt(least), constant(1));
         const V<D> scaled = hn::Mul(peak, r);
-        return {hn::Mul(scaled, hn::MulAdd(constant(10 * u), r, hn::Mul(constant(3), eta))),
+        return {hn::Mul(scaled, hn::MulAdd(constant(13 * u), r, hn::Mul(constant(3), eta))),
                 hn::Mul(hn::Mul(scaled, r),
                         hn::MulAdd(constant(40 * u), r, hn::Mul(constant(4), eta_slope)))};
     }
@@ -577,7 +579,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         hn::Store(hn::Mul(cx, per_unit), d, column[0]);
         hn::Store(hn::Mul(cy, per_unit), d, column[1]);
         hn::Store(hn::Mul(cz, per_unit), d, column[2]);
-        hn::Store(square, d, column[3]);
+        hn::Store(hn::Mul(square, constant(argument_scale<kind>)), d, column[3]);
         hn::Store(e.strength, d, column[4]);
         hn::Store(hn::IfThenZeroElse(kinked, hn::Mul(hn::Mul(constant(2), e.strength), square)), d,
                   column[5]);

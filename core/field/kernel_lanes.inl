@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <iterator>
+
 #include "core/field/kernel.h"
 #include "core/interval/exp.h"
 
@@ -25,54 +27,43 @@ using V = hn::Vec<Tag>;
 template <class Tag>
 using M = hn::Mask<Tag>;
 
-// e^-s for s >= 0: exp_nearest of core/interval/exp.h, operation by operation; where the machine
+// 2^-x for x >= 0: exp2_minus of core/interval/exp.h, operation by operation; where the machine
 // fuses products with sums it rounds less often, so that its bound holds all the more.
 template <class Tag>
-HWY_INLINE V<Tag> exp_minus(Tag d, V<Tag> s) {
+HWY_INLINE V<Tag> exp2_minus(Tag d, V<Tag> x) {
     using Real = hn::TFromD<Tag>;
-    using C = ExpConstants<Real>;
+    using C = Exp2Constants<Real>;
     const hn::RebindToUnsigned<Tag> bits;
-    const auto c = [&](Real value) HWY_ATTR { return hn::Set(d, value); };
-    const V<Tag> x = hn::Max(hn::Neg(s), c(C::least));
-    const V<Tag> shifted = hn::MulAdd(x, c(C::inverse_of_ln2), c(C::rounder));
-    const V<Tag> k = hn::Sub(shifted, c(C::rounder));
-    const V<Tag> r = hn::NegMulAdd(k, c(C::ln2_low), hn::NegMulAdd(k, c(C::ln2_high), x));
-    const V<Tag> r2 = hn::Mul(r, r);
-    V<Tag> q;
-    if constexpr (sizeof(Real) == 8) {
-        const auto& t = C::tail;
-        const V<Tag> r4 = hn::Mul(r2, r2);
-        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
-        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
-        const V<Tag> q45 = hn::MulAdd(c(t[5]), r, c(t[4]));
-        const V<Tag> q67 = hn::MulAdd(c(t[7]), r, c(t[6]));
-        const V<Tag> q89 = hn::MulAdd(c(t[9]), r, c(t[8]));
-        q = hn::MulAdd(r4, hn::MulAdd(r4, q89, hn::MulAdd(q67, r2, q45)), hn::MulAdd(q23, r2, q01));
-    } else {
-        const auto& t = C::tail;
-        const V<Tag> q01 = hn::MulAdd(c(t[1]), r, c(t[0]));
-        const V<Tag> q23 = hn::MulAdd(c(t[3]), r, c(t[2]));
-        q = hn::MulAdd(r2, hn::MulAdd(r2, c(t[4]), q23), q01);
+    const V<Tag> rounder = hn::Set(d, ExpConstants<Real>::rounder);
+    const V<Tag> within = hn::Min(x, hn::Set(d, C::greatest));
+    const V<Tag> shifted = hn::Sub(rounder, within);
+    const V<Tag> r = hn::Add(within, hn::Sub(shifted, rounder));
+    V<Tag> q = hn::Set(d, C::series[std::size(C::series) - 1]);
+    for (std::size_t i = std::size(C::series) - 1; i > 0; --i) {
+        q = hn::MulAdd(q, r, hn::Set(d, C::series[i - 1]));
     }
-    const V<Tag> tail = hn::Mul(hn::Mul(r, r2), q);
-    const V<Tag> sum = hn::Add(c(1), hn::Add(r, hn::MulAdd(c(Real(0.5)), r2, tail)));
+    const V<Tag> series = hn::MulAdd(q, r, hn::Set(d, Real(1)));
     const auto exponent =
         hn::ShiftLeft < sizeof(Real) == 8 ? 52 : 23 > (hn::BitCast(bits, shifted));
-    const V<Tag> scaled = hn::BitCast(d, hn::Add(hn::BitCast(bits, sum), exponent));
-    return hn::IfThenElseZero(hn::Le(s, c(-C::least)), scaled);
+    return hn::BitCast(d, hn::Add(hn::BitCast(bits, series), exponent));
 }
+
+// Blinn's kernel is computed as 2^-(s / ln 2): what it is given is s times this.
+template <KernelKind kind>
+inline constexpr double argument_scale = kind == KernelKind::blinn ? 0x1.71547652b82fep+0 : 1;
 
 template <class Tag>
 struct KernelValue {
     V<Tag> k, dk;  // k(s), k'(s)
 };
 
+// Of s times argument_scale.
 template <KernelKind kind, class Tag>
 HWY_INLINE KernelValue<Tag> kernel(Tag d, V<Tag> s) {
     using Real = hn::TFromD<Tag>;
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
     if constexpr (kind == KernelKind::blinn) {
-        const V<Tag> e = exp_minus(d, s);
+        const V<Tag> e = exp2_minus(d, s);
         return {e, hn::Neg(e)};
     } else if constexpr (kind == KernelKind::wyvill) {
         // (1 - s)^2 (9 - 4 s) / 9 and -2/9 (1 - s) (11 - 6 s)

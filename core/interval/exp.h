@@ -44,6 +44,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include "core/interval/interval.h"
 
@@ -129,6 +130,62 @@ template <IeeeReal Real>
     const Bits exponent = std::bit_cast<Bits>(shifted) << fraction_width;
     const Real scaled = std::bit_cast<Real>(std::bit_cast<Bits>(s) + exponent);
     return x < C::least ? Real(0) : scaled;
+}
+
+// 2^-x for x >= 0, of half as many operations: with k the integer nearest to x, r = x - k is exact,
+// and 2^-x = 2^-k 2^-r with
+//     2^-r = 1 + r q(r),  q = c0 + r (c1 + r (...)),  |r| <= 1/2,
+// q interpolated at the zeros of a Chebyshev polynomial and rounded.
+//
+// (7) |1 + r q(r) - 2^-r| < |r| 2^-54.4 [2^-26], below 0.19 u.
+//
+// (8) Numbers below 1, 1/2, .. are off by u/2, u/4, .. once rounded. In q: the last sum below 0.84
+//     by u/2, the product in it, below 0.15, by u/8, its other factor, below 0.29, by u/4, which
+//     counts half, and all before it by less than u/32: 0.8 u. So r q, below 0.42, is off by
+//     0.4 u + u/4, and by 0.84 u with (7).
+//     r < 0: 1 + r q in [1, 1.42) is off by u more: 1.84 u relative to 2^-r >= 1.
+//     r > 0: by u/2 more: 1.34 u relative to 2^-r > 0.707, less than 1.9 u.
+//     Fused products leave out roundings.
+template <IeeeReal Real>
+struct Exp2Constants;
+
+template <>
+struct Exp2Constants<double> {
+    static constexpr double greatest = 1021;
+    static constexpr double series[] = {
+        -0x1.62e42fefa39efp-1,  0x1.ebfbdff82c598p-3,   -0x1.c6b08d704a0c2p-5,
+        0x1.3b2ab6fba1ddap-7,   -0x1.5d87fe78a5276p-10, 0x1.430913096fd9fp-13,
+        -0x1.ffcbfc670dcd4p-17, 0x1.62bfd47773353p-20,  -0x1.b524fae627834p-24,
+        0x1.e6063f7217bc6p-28,  -0x1.e9d3fe3952179p-32};
+};
+
+template <>
+struct Exp2Constants<float> {
+    static constexpr float greatest = 125;
+    static constexpr float series[] = {-0x1.62e43p-1f, 0x1.ebfbep-3f,   -0x1.c6af6cp-5f,
+                                       0x1.3b2a54p-7f, -0x1.5f089p-10f, 0x1.44138ap-13f};
+};
+
+// 1 + r q(r); Number as for exp_tail.
+template <IeeeReal Real, class Number>
+[[nodiscard]] constexpr Number exp2_series(Number r) {
+    constexpr auto& c = Exp2Constants<Real>::series;
+    Number q(c[std::size(c) - 1]);
+    for (std::size_t i = std::size(c) - 1; i > 0; --i) q = Number(c[i - 1]) + r * q;
+    return Number(Real(1)) + r * q;
+}
+
+// |exp2_minus(x) - 2^-x| <= exp_relative_error 2^-x for x in [0, 1021] (float: [0, 125]), by (8);
+// beyond, the value at the end. exp2_minus(0) = 1. x is not NaN.
+template <IeeeReal Real>
+[[nodiscard]] constexpr Real exp2_minus(Real x) {
+    using Bits = typename ExpConstants<Real>::Bits;
+    const Real within = x > Exp2Constants<Real>::greatest ? Exp2Constants<Real>::greatest : x;
+    const Real shifted = ExpConstants<Real>::rounder - within;
+    const Real r = within + (shifted - ExpConstants<Real>::rounder);
+    constexpr int fraction_width = std::numeric_limits<Real>::digits - 1;
+    const Bits exponent = std::bit_cast<Bits>(shifted) << fraction_width;
+    return std::bit_cast<Real>(std::bit_cast<Bits>(exp2_series<Real>(r)) + exponent);
 }
 
 }  // namespace ivory

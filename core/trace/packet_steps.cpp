@@ -524,8 +524,8 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
         const Vec3v<D> away = away_from<shape>(d, entry[k], p, square);
         const KernelValue<D> value =
             kernel<kind>(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
-        const V<D> slope =
-            hn::Mul(hn::Set(d, 2 * entry[k].strength * entry[k].inverse_square), value.dk);
+        const double inverse_square = entry[k].inverse_square * (1 / argument_scale<kind>);
+        const V<D> slope = hn::Mul(hn::Set(d, 2 * entry[k].strength * inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
@@ -538,7 +538,7 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
                              hn::Sub(p.z, hn::Set(d, entry[k].cz))};
             const V<D> along = dot<D>(v, m);
             const V<D> across_square = hn::NegMulAdd(along, along, dot<D>(v, v));
-            const V<D> least = hn::Set(d, 1e-12 / entry[k].inverse_square);
+            const V<D> least = hn::Set(d, 1e-12 / inverse_square);
             defined = hn::And(defined,
                               hn::Or(hn::Gt(across_square, least), hn::Eq(value.dk, hn::Zero(d))));
         }

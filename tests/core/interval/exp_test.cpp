@@ -113,6 +113,58 @@ TYPED_TEST(Exp, SeriesIsWithinItsBound) {
     }
 }
 
+// (7) and (8) of the proof in exp.h.
+TYPED_TEST(Exp, SeriesOfPowersOfTwoIsWithinItsBound) {
+    using reference::RealInterval;
+    reference::Real ln2;
+    mpfr_const_log2(ln2.raw(), MPFR_RNDN);
+    const double bound = std::same_as<TypeParam, double> ? std::exp2(-54.4) : 0x1p-26;
+    for (int i = -2000; i <= 2000; ++i) {
+        const double r = 0.5 * i / 2000;
+        const RealInterval x(r);
+        const RealInterval series = exp2_series<TypeParam, RealInterval>(x);
+        const RealInterval exact = reference::exp(RealInterval(-r) * RealInterval(ln2));
+        const double off = std::abs((series - exact).lo.to_double());
+        ASSERT_LE(off, std::abs(r) * bound + 0x1p-200) << r;
+    }
+}
+
+TYPED_TEST(Exp, PowersOfTwoAreWithinTheirBound) {
+    using Real = TypeParam;
+    Adversary<Real> adversary(announced_seed());
+    constexpr Real greatest = Exp2Constants<Real>::greatest;
+    EXPECT_EQ(exp2_minus(Real(0)), 1);
+    EXPECT_EQ(exp2_minus(greatest), std::ldexp(Real(1), -static_cast<int>(greatest)));
+    EXPECT_EQ(exp2_minus(infinity<Real>), exp2_minus(greatest));
+    static_assert(exp2_minus(Real(3)) == Real(0.125));
+    mpfr_t exact, off;
+    mpfr_init2(exact, 120);
+    mpfr_init2(off, 120);
+    double worst = 0;
+    for (int i = 0; i < 1'000'000; ++i) {
+        // anywhere; near the halves, where the reduction turns over; tiny
+        const double u = adversary.uniform();
+        const auto halves = static_cast<Real>(0.5 * static_cast<double>(adversary.below(240)));
+        const std::uint64_t kind = adversary.below(4);
+        const Real x =
+            kind == 0   ? static_cast<Real>(u) * greatest
+            : kind == 1 ? static_cast<Real>(u)
+            : kind == 2 ? std::abs(halves + static_cast<Real>(0x1p-20 * (u - 0.5)))
+                        : static_cast<Real>(std::ldexp(u, -static_cast<int>(adversary.below(100))));
+        mpfr_set_d(exact, -static_cast<double>(x), MPFR_RNDN);
+        mpfr_exp2(exact, exact, MPFR_RNDN);
+        mpfr_set_d(off, static_cast<double>(exp2_minus(x)), MPFR_RNDN);
+        mpfr_sub(off, off, exact, MPFR_RNDN);
+        mpfr_div(off, off, exact, MPFR_RNDN);
+        const double relative = std::abs(mpfr_get_d(off, MPFR_RNDN));
+        ASSERT_LE(relative, exp_relative_error<Real>) << x;
+        worst = std::max(worst, relative / std::numeric_limits<Real>::epsilon());
+    }
+    mpfr_clear(exact);
+    mpfr_clear(off);
+    std::cout << "off by " << worst << " epsilon at most\n";
+}
+
 // Uniform, near multiples of ln 2 / 2 where the reduction turns over, near overflow and underflow,
 // tiny, short, and with any bits.
 double adversarial_argument(Adversary<double>& adversary) {
