@@ -171,7 +171,7 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.fine_usable = false;
+    w.is_complete = w.fine_usable = false;
 
     const StageSums sums =
         bundle_steps().coarse(*field_, finished_, scale_, unit_, coarse_cut_, here.active, w);
@@ -184,6 +184,8 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
 }
 
 void BundleField::complete(Window& w) {
+    if (w.is_complete) return;
+    w.is_complete = true;
     const Bounded& here = bounded_by_depth_[finished_depth_];
     const StageSums sums = bundle_steps().fine(*field_, finished_, scale_, here.active, w);
     w.fine_bounds = stage_bounds(sums, 0x1p-53, w.fine.size(), here.active.size(), threshold_,

@@ -82,10 +82,12 @@ struct Window {
 
     std::vector<BundleEntry<float>> coarse;  // p - c with p relative to the middle
     std::array<std::uint32_t, field_groups> coarse_count{};
-    StageBounds coarse_bounds;  // per unit
+    std::vector<std::uint32_t> coarse_element;  // index into Field
+    StageBounds coarse_bounds;                  // per unit
     bool coarse_usable = false;
 
     // Once `complete` has been called for this window:
+    bool is_complete = false;
     std::vector<BundleEntry<double>> fine;  // likewise, in scene units
     std::array<std::uint32_t, field_groups> fine_count{};
     std::vector<std::uint32_t> fine_element;  // index into Field
@@ -121,7 +123,7 @@ class BundleField {
         if (!is_empty(span_)) descend(0, parts[0], span_.lo, span_.hi, wanted, visit);
     }
 
-    // The fine stage of the window that is being visited.
+    // The fine stage of the window that is being visited, if it is not there yet.
     void complete(Window& window);
 
     // Bounded since `build`, and how many of them were ended by the sum of peaks.

@@ -594,9 +594,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         for (std::size_t k = 0; k < N; ++k) {
             if ((bits[k / 8] >> (k % 8) & 1) == 0) continue;
             const auto c = [&](std::size_t j) { return static_cast<Real>(column[j][k]); };
-            if (elements != nullptr) {
-                elements[entries.size()] = static_cast<std::uint32_t>(active.element[i + k]);
-            }
+            elements[entries.size()] = static_cast<std::uint32_t>(active.element[i + k]);
             entries.push_back({c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9)});
             ++count;
         }
@@ -615,11 +613,12 @@ StageSums coarse(const Field& field, const Stretch& stretch, double scale, doubl
     StageSums sums;
     window.coarse.clear();
     window.coarse_count.fill(0);
+    window.coarse_element.resize(active.size());
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
         enter_group<float, shape, kind>(field, stretch, scale, unit, cut, active, first, end,
-                                        window.middle, window.coarse, nullptr,
+                                        window.middle, window.coarse, window.coarse_element.data(),
                                         window.coarse_count[group], sums);
     });
     return sums;

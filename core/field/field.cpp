@@ -65,6 +65,10 @@ void add(Field& field, const Element& element, std::size_t source) {
     field.length.push_back(length);
     field.inverse_width.push_back(1 / element.width);
     field.inverse_square.push_back(1 / (element.width * element.width));
+    field.red.push_back(static_cast<float>(element.color.x));
+    field.green.push_back(static_cast<float>(element.color.y));
+    field.blue.push_back(static_cast<float>(element.color.z));
+    field.one_color = field.one_color && element.color == field.color.front();
 }
 
 }  // namespace

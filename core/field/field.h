@@ -52,9 +52,11 @@ struct Field {
     std::vector<double> mx, my, mz;  // segment: m = b - a; circle: unit normal; point: 0
     // Segment: 1 / |m|^2, 0 where that is shorter than 1e-40; circle: radius; point: 0.
     std::vector<double> extra;
-    std::vector<double> length;          // of m for a segment; otherwise 0
-    std::vector<double> inverse_width;   // 1 / w
-    std::vector<double> inverse_square;  // 1 / w^2
+    std::vector<double> length;           // of m for a segment; otherwise 0
+    std::vector<double> inverse_width;    // 1 / w
+    std::vector<double> inverse_square;   // 1 / w^2
+    std::vector<float> red, green, blue;  // `color`, for what is only looked at
+    bool one_color = true;                // all elements have the same
 
     // Around all skeletons.
     Box3 skeletons;

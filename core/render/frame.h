@@ -62,9 +62,4 @@ struct Frame {
     [[nodiscard]] Interval<double> t(std::size_t pixel) const { return {t_lo[pixel], t_hi[pixel]}; }
 };
 
-// Whether the ray meets the surface, or may: then t and the surface's normal and colour are given.
-[[nodiscard]] constexpr bool possibly_hit(Status status) {
-    return status != Status::miss && status != Status::claimed_miss;
-}
-
 }  // namespace ivory

@@ -38,8 +38,8 @@ struct TracedTile {
     RayBundle rays;
     std::array<std::uint32_t, pixels_in_tile> pixel;  // in the frame
     std::array<Isolation, pixels_in_tile> isolations;
-    std::array<SurfacePoint, pixels_in_tile> surfaces;
-    std::array<Rgba8, pixels_in_tile> colors;
+    BundleSurfaces surfaces;
+    alignas(64) std::array<Rgba8, pixels_in_tile> colors;
 
     [[nodiscard]] std::size_t size() const { return rays.size(); }
 };
@@ -378,11 +378,10 @@ class FrameJob::Work {
         TracedTile traced;
         gather(traced, index, stride, first ? 0 : tile.stride);
         const std::span<Isolation> isolations(traced.isolations.data(), traced.size());
-        const std::span<SurfacePoint> surfaces(traced.surfaces.data(),
-                                               wants_surface() ? traced.size() : 0);
         const Field& field = *picture_.field;
+        traced.surfaces.exact = !canvas_.frame.surface.empty();
         picture_.method->trace_bundle(field, tile.list, traced.rays, picture_.options, isolations,
-                                      surfaces, tally.counts);
+                                      wants_surface() ? &traced.surfaces : nullptr, tally.counts);
         // What the list leaves open may be closed by the elements that it left out.
         const bool all_were_there = tile.list.rest.lo == 0 && tile.list.rest.hi == 0;
         std::array<double, pixels_in_tile> again;
@@ -393,7 +392,8 @@ class FrameJob::Work {
             ++tally.counts.skipping.rays_alone;
             isolations[k] = picture_.method->isolate(field, all_, traced.rays.ray(k),
                                                      picture_.options, tally.counts);
-            if (surfaces.empty() || !possibly_hit(isolations[k].status)) continue;
+            traced.surfaces.forget(k);
+            if (!wants_surface() || !possibly_hit(isolations[k].status)) continue;
             again[k] = midpoint(isolations[k].t);
             any = true;
         }
@@ -463,32 +463,15 @@ class FrameJob::Work {
     // The surface at those m that are finite; the others keep theirs.
     void find_surface(TracedTile& traced, const ElementList& list,
                       const std::array<double, pixels_in_tile>& m) const {
-        std::array<SurfacePoint, pixels_in_tile> found;
         picture_.method->surface_bundle(*picture_.field, list, traced.rays, picture_.options,
-                                        {m.data(), traced.size()}, {found.data(), traced.size()});
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            if (m[k] < infinity<double>) traced.surfaces[k] = found[k];
-        }
+                                        {m.data(), traced.size()}, traced.surfaces);
     }
 
     // The colours of the surface in the light.
     void paint(TracedTile& traced) const {
         if (!shaded()) return;
-        ShadingLanes lanes;
-        std::array<std::uint16_t, pixels_in_tile> lane;
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            traced.colors[k] = picture_.lighting.background;
-            if (!possibly_hit(traced.isolations[k].status)) continue;
-            lane[lanes.count] = static_cast<std::uint16_t>(k);
-            lanes.add({traced.rays.dx[k], traced.rays.dy[k], traced.rays.dz[k]},
-                      traced.surfaces[k]);
-        }
-        const std::size_t hits = lanes.count;
-        if (hits == 0) return;
-        shade_lanes(picture_.lighting, lanes);
-        for (std::size_t k = 0; k < hits; ++k) {
-            traced.colors[lane[k]] = to_srgb({lanes.r[k], lanes.g[k], lanes.b[k]});
-        }
+        shade_lanes(picture_.lighting, traced.rays, traced.surfaces,
+                    {traced.colors.data(), traced.size()});
     }
 
     void commit(std::size_t index, int stride, bool first, const TracedTile& traced) {
@@ -509,7 +492,7 @@ class FrameJob::Work {
             if (!possibly_hit(isolation.status)) continue;
             frame.t_lo[p] = isolation.t.lo;
             frame.t_hi[p] = isolation.t.hi;
-            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces[k];
+            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
             // Primary rays have length 1, so that a span of t is a length.
             double& widest = isolation.status == Status::unresolved ? tile.unresolved_width_max
                                                                     : tile.enclosure_width_max;
@@ -527,6 +510,8 @@ class FrameJob::Work {
             if (stopped()) return false;
             TracedTile traced;
             gather(traced, index, tile.stride, 0);
+            traced.surfaces.exact = !frame.surface.empty();
+            traced.surfaces.clear(traced.size());
             std::array<double, pixels_in_tile> m;
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
@@ -539,7 +524,7 @@ class FrameJob::Work {
                 const std::size_t p = traced.pixel[k];
                 frame.color[p] = traced.colors[k];
                 if (!frame.surface.empty() && possibly_hit(frame.status[p])) {
-                    frame.surface[p] = traced.surfaces[k];
+                    frame.surface[p] = traced.surfaces.points[k];
                 }
             }
         }

@@ -1,11 +1,12 @@
 // Light and colour: from the surface at a point to the bytes of a pixel. Nothing but + - * / and
-// square roots (core/render/shade_lanes.h), so that every machine draws the same.
+// square roots, in float (core/render/shade_lanes.h), so that every machine draws the same.
 #pragma once
 
 #include <vector>
 
 #include "core/render/camera.h"
 #include "core/render/frame.h"
+#include "core/render/srgb.h"
 #include "core/scene/scene.h"
 #include "core/trace/ray.h"
 
@@ -30,8 +31,5 @@ struct Lighting {
 // normal is 0 the surface counts as facing the viewer.
 [[nodiscard]] Rgba8 shade(const Lighting& lighting, const Vec3d& direction,
                           const SurfacePoint& surface);
-
-// Linear RGB, clamped to 0..1, as bytes of sRGB: 255 times the curve of IEC 61966-2-1, to nearest.
-[[nodiscard]] Rgba8 to_srgb(const Color& linear);
 
 }  // namespace ivory

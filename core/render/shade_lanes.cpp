@@ -1,5 +1,10 @@
 #include "core/render/shade_lanes.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
 #include "core/math/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -14,15 +19,16 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::ScalableTag<double>;
+using D = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 
 // The material and the room. Shares of the light that falls in.
-constexpr double diffuse = 0.78;
-constexpr double highlight = 0.24;  // at the middle of a lamp's reflection
-constexpr double sky = 0.12;        // light from all around, from the zenith
-constexpr double ground = 0.03;     // and from below
-constexpr double rim = 0.06;        // what grazing sight mirrors of the surroundings
+constexpr float diffuse = 0.78F;
+constexpr float highlight = 0.24F;  // at the middle of a lamp's reflection
+constexpr float sky = 0.12F;        // light from all around, from the zenith
+constexpr float ground = 0.03F;     // and from below
+constexpr float rim = 0.06F;        // what grazing sight mirrors of the surroundings
 
 struct Vec3v {
     V x, y, z;
@@ -34,7 +40,8 @@ HWY_INLINE V dot(const Vec3v& a, const Vec3v& b) {
 
 HWY_INLINE Vec3v set(const Vec3d& v) {
     const D d;
-    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+    return {hn::Set(d, static_cast<float>(v.x)), hn::Set(d, static_cast<float>(v.y)),
+            hn::Set(d, static_cast<float>(v.z))};
 }
 
 // x^48: half as bright where the normal is 10 degrees away from the highlight's middle.
@@ -49,26 +56,58 @@ HWY_INLINE V lobe(V x) {
 // Where light adds up beyond `knee` it bends smoothly towards 1 instead of being cut off there.
 HWY_INLINE V shoulder(V x) {
     const D d;
-    constexpr double knee = 0.80;
-    const V one = hn::Set(d, 1.0);
+    constexpr float knee = 0.80F;
+    const V one = hn::Set(d, 1.0F);
     const V beyond = hn::Div(hn::Sub(x, hn::Set(d, knee)), hn::Set(d, 1 - knee));
     const V bent = hn::Add(hn::Set(d, knee),
                            hn::Mul(hn::Set(d, 1 - knee), hn::Div(beyond, hn::Add(one, beyond))));
     return hn::IfThenElse(hn::Le(x, hn::Set(d, knee)), x, bent);
 }
 
-void shade(const Lighting& lighting, ShadingLanes& lanes) {
+// A vector of doubles, which stand at a multiple of its length in an array of 256.
+HWY_INLINE V rounded(const double* values) {
+#if HWY_TARGET == HWY_SCALAR
+    return hn::Set(D(), static_cast<float>(*values));
+#else
+    const hn::ScalableTag<double> wide;
+    const hn::Half<D> half;
+    return hn::Combine(D(), hn::DemoteTo(half, hn::LoadU(wide, values + hn::Lanes(wide))),
+                       hn::DemoteTo(half, hn::LoadU(wide, values)));
+#endif
+}
+
+// Bytes of linear light, clamped to 0..1.
+HWY_INLINE hn::Vec<I> byte_of(V linear, const SrgbTable& table) {
     const D d;
+    const I di;
+    const V x = hn::Min(hn::Max(linear, hn::Zero(d)), hn::Set(d, 1.0F));
+    const auto bin = hn::ConvertTo(di, hn::Mul(x, hn::Set(d, float{SrgbTable::bins})));
+    const auto first = hn::GatherIndex(di, table.first.data(), bin);
+    const V next = hn::GatherIndex(d, table.least_float.data() + 1, first);
+    const auto one_more = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(x, next)));  // 0 or -1
+    return hn::Sub(first, one_more);
+}
+
+void shade(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+           std::span<Rgba8> colors) {
+    const D d;
+    const I di;
     const std::size_t N = hn::Lanes(d);
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
-    for (std::size_t k = 0; k < lanes.count; k += N) {
-        const Vec3v to_viewer{hn::Neg(hn::Load(d, &lanes.dx[k])),
-                              hn::Neg(hn::Load(d, &lanes.dy[k])),
-                              hn::Neg(hn::Load(d, &lanes.dz[k]))};
-        Vec3v normal{hn::Load(d, &lanes.nx[k]), hn::Load(d, &lanes.ny[k]),
-                     hn::Load(d, &lanes.nz[k])};
-        const Vec3v color{hn::Load(d, &lanes.r[k]), hn::Load(d, &lanes.g[k]),
-                          hn::Load(d, &lanes.b[k])};
+    const SrgbTable& table = srgb_table();
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), half = hn::Set(d, 0.5F);
+    for (std::size_t k = 0; k < colors.size(); k += N) {
+        const std::size_t count = std::min(N, colors.size() - k);
+        Vec3v normal{hn::LoadU(d, &surfaces.nx[k]), hn::LoadU(d, &surfaces.ny[k]),
+                     hn::LoadU(d, &surfaces.nz[k])};
+        const auto none_there = hn::IsNaN(normal.x);
+        if (hn::CountTrue(d, hn::And(none_there, hn::FirstN(d, count))) == count) {
+            std::fill_n(&colors[k], count, lighting.background);
+            continue;
+        }
+        const Vec3v to_viewer{hn::Neg(rounded(&rays.dx[k])), hn::Neg(rounded(&rays.dy[k])),
+                              hn::Neg(rounded(&rays.dz[k]))};
+        const Vec3v color{hn::LoadU(d, &surfaces.r[k]), hn::LoadU(d, &surfaces.g[k]),
+                          hn::LoadU(d, &surfaces.b[k])};
         const auto none = hn::And(hn::And(hn::Eq(normal.x, zero), hn::Eq(normal.y, zero)),
                                   hn::Eq(normal.z, zero));
         normal = {hn::IfThenElse(none, to_viewer.x, normal.x),
@@ -106,10 +145,10 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
             // Fades in with the light itself, so that no highlight is cut at the edge of the
             // shadow.
             const V gloss = hn::Mul(hn::Mul(hn::Set(d, highlight), lobe(hn::Min(across, one))),
-                                    hn::Min(one, hn::Mul(hn::Set(d, 4.0), lit)));
+                                    hn::Min(one, hn::Mul(hn::Set(d, 4.0F), lit)));
             const V share = hn::Mul(hn::Set(d, diffuse), lit);
             const auto add = [&](V sum, V of_color, double radiance) HWY_ATTR {
-                const V lamp_light = hn::Set(d, radiance);
+                const V lamp_light = hn::Set(d, static_cast<float>(radiance));
                 const V more = hn::Add(hn::Mul(share, hn::Mul(of_color, lamp_light)),
                                        hn::Mul(gloss, lamp_light));
                 return hn::Add(sum, hn::IfThenElseZero(is_lit, more));
@@ -117,15 +156,26 @@ void shade(const Lighting& lighting, ShadingLanes& lanes) {
             light = {add(light.x, color.x, lamp.radiance.x), add(light.y, color.y, lamp.radiance.y),
                      add(light.z, color.z, lamp.radiance.z)};
         }
-        hn::Store(shoulder(light.x), d, &lanes.r[k]);
-        hn::Store(shoulder(light.y), d, &lanes.g[k]);
-        hn::Store(shoulder(light.z), d, &lanes.b[k]);
+        const auto red = byte_of(shoulder(light.x), table);
+        const auto green = hn::ShiftLeft<8>(byte_of(shoulder(light.y), table));
+        const auto blue = hn::ShiftLeft<16>(byte_of(shoulder(light.z), table));
+        const auto opaque = hn::Set(di, std::int32_t{-0x1000000});
+        const auto background = hn::Set(
+            di, static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(lighting.background)));
+        const auto bytes = hn::IfThenElse(hn::RebindMask(di, none_there), background,
+                                          hn::Or(hn::Or(red, green), hn::Or(blue, opaque)));
+        alignas(64) std::int32_t out[HWY_MAX_BYTES / sizeof(float)];
+        hn::Store(bytes, di, out);
+        std::memcpy(&colors[k], out, count * sizeof(Rgba8));
     }
 }
 
 }  // namespace
 
-void shade_of_target(const Lighting& lighting, ShadingLanes& lanes) { shade(lighting, lanes); }
+void shade_of_target(const Lighting& lighting, const RayBundle& rays,
+                     const BundleSurfaces& surfaces, std::span<Rgba8> colors) {
+    shade(lighting, rays, surfaces, colors);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace ivory
@@ -136,8 +186,10 @@ namespace ivory {
 
 HWY_EXPORT(shade_of_target);
 
-void shade_lanes(const Lighting& lighting, ShadingLanes& lanes) {
-    HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, lanes);
+void shade_lanes(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+                 std::span<Rgba8> colors) {
+    static_assert(std::endian::native == std::endian::little && sizeof(Rgba8) == 4);
+    HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, rays, surfaces, colors);
 }
 
 }  // namespace ivory

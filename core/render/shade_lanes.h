@@ -1,38 +1,17 @@
-// The arithmetic of shade.h for many pixels at a time in SIMD.
-// Nothing is fused: every instruction set gives the same doubles.
+// The arithmetic of shade.h for many pixels at a time, in float and SIMD.
+// Nothing is fused: from the same floats every instruction set makes the same bytes.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <span>
 
 #include "core/render/shade.h"
+#include "core/trace/bundle_surfaces.h"
+#include "core/trace/ray_bundle.h"
 
 namespace ivory {
 
-// What light falls on, as structure of arrays; whatever stands beyond `count` is never looked at.
-struct ShadingLanes {
-    static constexpr std::size_t capacity = 256;
-
-    std::size_t count = 0;
-    alignas(64) std::array<double, capacity> dx, dy, dz;  // of the ray, length 1
-    alignas(64) std::array<double, capacity> nx, ny, nz;  // normal, length 1, or 0
-    alignas(64) std::array<double, capacity> r, g, b;  // in: the surface's colour; out: the light
-
-    void add(const Vec3d& direction, const SurfacePoint& surface) {
-        dx[count] = direction.x;
-        dy[count] = direction.y;
-        dz[count] = direction.z;
-        nx[count] = surface.normal.x;
-        ny[count] = surface.normal.y;
-        nz[count] = surface.normal.z;
-        r[count] = surface.color.x;
-        g[count] = surface.color.y;
-        b[count] = surface.color.z;
-        ++count;
-    }
-};
-
-// r, g, b: from the surface's colour to the linear light that reaches the eye.
-void shade_lanes(const Lighting& lighting, ShadingLanes& lanes);
+// colors[k]: the light from the surface along ray k, or the background where surfaces.nx[k] is NaN.
+void shade_lanes(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+                 std::span<Rgba8> colors);
 
 }  // namespace ivory

@@ -37,29 +37,40 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
     parts_[0].end = static_cast<std::uint32_t>(rays.count);
 }
 
-// Of the lanes whose m lies in the window, below `limit`.
-template <class Midpoint>
-void PacketTracer::surface_in(const Window& window, const BundlePart& part, const Field& field,
-                              double limit, std::span<SurfacePoint> surfaces,
-                              const Midpoint& midpoint_of) {
+// Of the lanes whose m lies in the window: in float, and in double where that is wanted or float
+// loses the direction.
+void PacketTracer::surface_in(Window& window, const BundlePart& part, const Field& field,
+                              BundleSurfaces& surfaces) {
+    const auto wanted = [&](std::size_t k) { return m_[k] >= window.begin && m_[k] < window.end; };
+    bool any = false;
+    for (std::size_t k = part.first; k < part.end && !any; ++k) any = wanted(k);
+    if (!any) return;
+    if (window.coarse_usable) {
+        packet_steps().look(window, field, bundle_field_.unit(), lanes_, part.first, part.end,
+                            m_.data(), surfaces);
+    }
     index_.clear();
     t_.clear();
     for (std::size_t k = part.first; k < part.end; ++k) {
-        const double m = midpoint_of(k);
-        if (!(m >= window.begin && m < window.end && m < limit)) continue;
+        if (!wanted(k) || surfaces.found(k)) continue;
         index_.push_back(static_cast<std::uint32_t>(k));
-        t_.push_back(m);
+        t_.push_back(m_[k]);
     }
     if (index_.empty()) return;
+    bundle_field_.complete(window);
     points_.resize(index_.size());
     packet_steps().surface(window, field, lanes_, index_, t_.data(), points_.data());
-    for (std::size_t k = 0; k < index_.size(); ++k) surfaces[index_[k]] = points_[k];
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+        const std::size_t k = index_[i];
+        if (!surfaces.seen(k)) surfaces.set_seen(k, points_[i]);
+        if (surfaces.exact) surfaces.points[k] = points_[i];
+    }
 }
 
 void PacketTracer::isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                            const Settings& settings, std::span<Isolation> isolations,
-                           std::span<SurfacePoint> surfaces, Counts& counts) {
-    for (SurfacePoint& surface : surfaces) surface.normal = {nan, nan, nan};
+                           BundleSurfaces* surfaces, Counts& counts) {
+    if (surfaces != nullptr) surfaces->clear(rays.count);
     const Interval<double> nothing = Interval<double>::empty_set();
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
                              settings.skipping.windows)) {
@@ -117,12 +128,12 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             }
             counts.evaluations += fine;
             counts.element_evaluations += fine * window.fine.size();
-            if (!surfaces.empty()) {
-                surface_in(window, part, field, limit, surfaces, [&](std::size_t k) {
-                    return lanes_.state[k] == Lanes::hit
-                               ? midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]))
-                               : nan;
-                });
+            if (surfaces != nullptr) {
+                for (std::size_t k = part.first; k < part.end; ++k) {
+                    const double m = midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]));
+                    m_[k] = lanes_.state[k] == Lanes::hit && m < limit ? m : nan;
+                }
+                surface_in(window, part, field, *surfaces);
             }
             return any(all, Lanes::walking);
         });
@@ -143,24 +154,26 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
 }
 
 void PacketTracer::surface(const Field& field, const ElementList& list, const RayBundle& rays,
-                           double tolerance, std::span<const double> m,
-                           std::span<SurfacePoint> surfaces) {
+                           double tolerance, std::span<const double> m, BundleSurfaces& surfaces) {
+    const double limit = exact_limit(field, rays.bundle);
     for (std::size_t k = 0; k < rays.count; ++k) {
-        if (std::isfinite(m[k])) surfaces[k].normal = {nan, nan, nan};
+        m_[k] = m[k] < limit ? m[k] : nan;
+        if (!std::isfinite(m[k])) continue;
+        surfaces.nx[k] = std::numeric_limits<float>::quiet_NaN();
+        if (surfaces.exact) surfaces.points[k].normal.x = nan;
     }
     if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
     take(rays, true);
-    const double limit = exact_limit(field, rays.bundle);
+    packet_steps().prepare(lanes_);
     bundle_field_.for_windows(
         parts_,
         [&](const BundlePart& part, double t0, double t1) {
-            return std::any_of(m.begin() + part.first, m.begin() + part.end,
+            return std::any_of(m_.begin() + part.first, m_.begin() + part.end,
                                [=](double t) { return t >= t0 && t < t1; });
         },
         std::numeric_limits<int>::max(),
         [&](Window& window, const BundlePart& part) {
-            bundle_field_.complete(window);
-            surface_in(window, part, field, limit, surfaces, [&](std::size_t k) { return m[k]; });
+            surface_in(window, part, field, surfaces);
             return true;
         });
 }

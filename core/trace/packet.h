@@ -8,6 +8,7 @@
 // it was found. Each ray's steps depend on the windows and on itself alone, not on its neighbours.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
+#include "core/trace/bundle_surfaces.h"
 #include "core/trace/packet_steps.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
@@ -32,26 +34,26 @@ class PacketTracer {
     };
 
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
-    // on [0, t.lo). `list` has to be valid on the bundle. Where `surfaces` is not empty it gets
-    // what `surface` would give for the hits' midpoints, or a normal of NaN.
+    // on [0, t.lo). `list` has to be valid on the bundle. Unless `surfaces` is null it gets what
+    // `surface` would give for the hits' midpoints.
     void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                  const Settings& settings, std::span<Isolation> isolations,
-                 std::span<SurfacePoint> surfaces, Counts& counts);
+                 BundleSurfaces* surfaces, Counts& counts);
 
-    // Normal and colour at m[k] of ray k, where that is finite; the others stay. A normal of NaN
-    // where they have to be found by other means.
+    // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
+    // `found` then have to be found by other means.
     void surface(const Field& field, const ElementList& list, const RayBundle& rays,
-                 double tolerance, std::span<const double> m, std::span<SurfacePoint> surfaces);
+                 double tolerance, std::span<const double> m, BundleSurfaces& surfaces);
 
   private:
     void take(const RayBundle& rays, bool in_parts);
-    template <class Midpoint>
-    void surface_in(const Window& window, const BundlePart& part, const Field& field, double limit,
-                    std::span<SurfacePoint> surfaces, const Midpoint& midpoint_of);
+    void surface_in(Window& window, const BundlePart& part, const Field& field,
+                    BundleSurfaces& surfaces);
 
     BundleField bundle_field_;
     Lanes lanes_;
     std::vector<BundlePart> parts_;
+    std::array<double, RayBundle::capacity> m_;  // where a lane's surface is wanted, or NaN
     std::vector<std::uint32_t> index_;  // of lanes in a window, their t and what is found there
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;

@@ -598,11 +598,101 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
     }
 }
 
+// Sums of what is only looked at.
+struct LookSum {
+    Vec3v<F> gradient, color;
+    V<F> weight;
+};
+
+template <Shape shape, KernelKind kind>
+HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32_t* element,
+                         std::uint32_t count, const Field& field, const Vec3v<F>& p, LookSum& sum) {
+    constexpr auto to_slope = static_cast<float>(2 / argument_scale<kind>);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const BundleEntry<float>& e = entry[k];
+        V<F> square;
+        const Vec3v<F> away = away_from<shape>(d, e, p, square);
+        const KernelValue<F> value = kernel<kind>(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
+        const V<F> slope = hn::Mul(hn::Set(d, to_slope * e.strength * e.inverse_square), value.dk);
+        sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
+                        hn::MulAdd(slope, away.y, sum.gradient.y),
+                        hn::MulAdd(slope, away.z, sum.gradient.z)};
+        if (field.one_color || !(e.strength > 0)) continue;
+        const V<F> part = hn::Mul(hn::Set(d, e.strength), value.k);
+        const std::uint32_t i = element[k];
+        sum.color = {hn::MulAdd(part, hn::Set(d, field.red[i]), sum.color.x),
+                     hn::MulAdd(part, hn::Set(d, field.green[i]), sum.color.y),
+                     hn::MulAdd(part, hn::Set(d, field.blue[i]), sum.color.z)};
+        sum.weight = hn::Add(sum.weight, part);
+    }
+}
+
+// The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
+// they bound the errors of F and of |grad F|.
+void look(const Window& window, const Field& field, double unit, const Lanes& lanes,
+          std::size_t first_lane, std::size_t end_lane, const double* m, BundleSurfaces& surfaces) {
+    const F d;
+    const std::size_t N = hn::Lanes(d);
+    const V<F> zero = hn::Zero(d);
+    constexpr double firm_share = 0x1p9;
+    const StageBounds& bounds = window.coarse_bounds;
+    for (std::size_t first = first_lane; first < end_lane; first += N) {
+        alignas(64) float tau[HWY_MAX_BYTES / sizeof(float)];
+        alignas(64) float inside[HWY_MAX_BYTES / sizeof(float)];
+        bool any = false;
+        for (std::size_t k = 0; k < N; ++k) {
+            const bool in =
+                first + k < end_lane && m[first + k] >= window.begin && m[first + k] < window.end;
+            inside[k] = in ? 1.0F : 0.0F;
+            tau[k] = in ? static_cast<float>((m[first + k] - window.middle) / unit) : 0.0F;
+            any = any || in;
+        }
+        if (!any) continue;
+        const M<F> wanted = hn::Gt(hn::Load(d, inside), zero);
+        const RayLanes<F> rays = rays_of(d, window, unit, lanes, first);
+        const V<F> t = hn::Load(d, tau);
+        const Vec3v<F> p{hn::MulAdd(t, rays.direction.x, rays.middle.x),
+                         hn::MulAdd(t, rays.direction.y, rays.middle.y),
+                         hn::MulAdd(t, rays.direction.z, rays.middle.z)};
+        LookSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
+        for_groups(window.coarse_count, [&]<Shape shape, KernelKind kind>(
+                                            std::size_t group, std::uint32_t count) HWY_ATTR {
+            add_look<shape, kind>(d, window.coarse.data() + group,
+                                  window.coarse_element.data() + group, count, field, p, sum);
+        });
+        const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));
+        M<F> firm = hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * bounds.slope)));
+        const V<F> inverse = hn::Div(hn::Set(d, -1.0F), length);
+        Vec3v<F> color;
+        if (field.one_color) {
+            const Color c = field.color.empty() ? Color{} : field.color.front();
+            color = {hn::Set(d, static_cast<float>(c.x)), hn::Set(d, static_cast<float>(c.y)),
+                     hn::Set(d, static_cast<float>(c.z))};
+        } else {
+            const double error = std::fmax(bounds.above, bounds.below);
+            firm = hn::And(firm,
+                           hn::Gt(sum.weight, hn::Set(d, static_cast<float>(firm_share * error))));
+            const V<F> share = hn::Div(hn::Set(d, 1.0F), sum.weight);
+            color = {hn::Mul(sum.color.x, share), hn::Mul(sum.color.y, share),
+                     hn::Mul(sum.color.z, share)};
+        }
+        const M<F> known = hn::And(wanted, firm);
+        const auto put = [&](V<F> value, std::array<float, BundleSurfaces::room>& column)
+                             HWY_ATTR { hn::BlendedStore(value, known, d, &column[first]); };
+        put(hn::Mul(sum.gradient.x, inverse), surfaces.nx);
+        put(hn::Mul(sum.gradient.y, inverse), surfaces.ny);
+        put(hn::Mul(sum.gradient.z, inverse), surfaces.nz);
+        put(color.x, surfaces.r);
+        put(color.y, surfaces.g);
+        put(color.z, surfaces.b);
+    }
+}
+
 }  // namespace
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{prepare, walk,    walk_again,
-                                   enclose, surface, hwy::TargetName(HWY_TARGET)};
+    static const PacketSteps steps{
+        prepare, walk, walk_again, enclose, look, surface, hwy::TargetName(HWY_TARGET)};
     return steps;
 }
 

@@ -12,6 +12,7 @@
 #include "core/field/field.h"
 #include "core/interval/interval.h"
 #include "core/math/vec3.h"
+#include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
 
 namespace ivory {
@@ -59,6 +60,11 @@ struct PacketSteps {
     std::uint64_t (*enclose)(const Window& window, double threshold, double half_width,
                              std::size_t first, std::size_t end, Lanes::State otherwise,
                              Lanes& lanes);
+
+    // Normal and colour at m[k] of those lanes k of first .. end for which that lies in the window,
+    // in float: within 2^-8, or nx = NaN where float might lose more.
+    void (*look)(const Window& window, const Field& field, double unit, const Lanes& lanes,
+                 std::size_t first, std::size_t end, const double* m, BundleSurfaces& surfaces);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.

@@ -24,6 +24,11 @@ enum class Status : std::uint8_t {
     claimed_miss,  // likewise
 };
 
+// Whether the ray meets the surface, or may: then t and the surface's normal and colour are given.
+[[nodiscard]] constexpr bool possibly_hit(Status status) {
+    return status != Status::miss && status != Status::claimed_miss;
+}
+
 struct Isolation {
     Status status = Status::unresolved;
     Interval<double> t{};  // in units of |direction|; empty on a miss and a claimed miss

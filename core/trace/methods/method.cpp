@@ -22,20 +22,21 @@ SurfacePoint Method::surface(const Field& field, const ElementList& list, const 
 
 void Method::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                           const MethodOptions& options, std::span<Isolation> isolations,
-                          std::span<SurfacePoint> surfaces, Counts& counts) const {
+                          BundleSurfaces* surfaces, Counts& counts) const {
+    if (surfaces != nullptr) surfaces->clear(rays.size());
     for (std::size_t k = 0; k < rays.size(); ++k) {
         isolations[k] = isolate(field, list, rays.ray(k), options, counts);
         const Status status = isolations[k].status;
-        if (surfaces.empty() || status == Status::miss || status == Status::claimed_miss) continue;
-        surfaces[k] = surface(field, list, rays.ray(k), midpoint(isolations[k].t), options);
+        if (surfaces == nullptr || !possibly_hit(status)) continue;
+        surfaces->set(k, surface(field, list, rays.ray(k), midpoint(isolations[k].t), options));
     }
 }
 
 void Method::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
-                            std::span<SurfacePoint> surfaces) const {
+                            BundleSurfaces& surfaces) const {
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        if (std::isfinite(m[k])) surfaces[k] = surface(field, list, rays.ray(k), m[k], options);
+        if (std::isfinite(m[k])) surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/field/field.h"
 #include "core/field/support.h"
+#include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
 #include "core/trace/skipping.h"
@@ -16,7 +17,7 @@ struct MethodOptions {
     double tolerance = 1e-9;  // E, 1e-15 .. 0.1: widths in units of the nearest element's width
     double difference_delta =
         1e-5;  // central differences of the paper's normal, in units of the least width
-    Skipping skipping = {};  // `lists` of the renderer, all others of `proved`
+    Skipping skipping = {};  // `lists` of the renderer and `proved`, all others of `proved`
 };
 
 class Method {
@@ -40,15 +41,15 @@ class Method {
                                                const MethodOptions& options) const;
 
     // The same for all rays of a bundle, for which `list` has to be valid: one isolation for each,
-    // and, unless `surfaces` is empty, the surface at the midpoints of those that may be hits.
+    // and, unless `surfaces` is null, the surface at the midpoints of those that may be hits.
     virtual void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                               const MethodOptions& options, std::span<Isolation> isolations,
-                              std::span<SurfacePoint> surfaces, Counts& counts) const;
+                              BundleSurfaces* surfaces, Counts& counts) const;
 
-    // Normal and colour of each ray at its m; where that is not finite, they are not defined.
+    // Normal and colour of each ray at its m; where that is not finite, they stay.
     virtual void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                                 const MethodOptions& options, std::span<const double> m,
-                                std::span<SurfacePoint> surfaces) const;
+                                BundleSurfaces& surfaces) const;
 
   protected:
     Method() = default;

@@ -32,8 +32,8 @@ double greatest_cell(const Field& field, double tolerance) {
 }
 
 // f < 0 certainly holds on [0, outside_until).
-Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
-                       const Ray& ray, const MethodOptions& options, Counts& counts) {
+Isolation search_from(double outside_until, const Field& field, const ElementList& list,
+                      const Ray& ray, const MethodOptions& options, Counts& counts) {
     // 1. The ray, scaled, as far as it is in the bounding box.
     const Search search = begin_search(field, list, ray, options);
     if (search.over()) return search.answer;
@@ -75,6 +75,25 @@ Isolation isolate_from(double outside_until, const Field& field, const ElementLi
     return isolation;
 }
 
+// Against those elements alone that reach the ray, where there are many; if what the others could
+// add leaves it open, against all.
+Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
+                       const Ray& ray, const MethodOptions& options, Counts& counts) {
+    constexpr std::size_t many = 48;
+    const Vec3d& d = ray.direction;
+    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    if (options.skipping.lists && list.elements.size() > many && largest > 1e-100 &&
+        largest < 1e100) {
+        const ElementList near = reaching_elements(field, list, {ray.origin, d, 0});
+        counts.skipping.list_elements += list.elements.size();
+        counts.skipping.list_left_out += list.elements.size() - near.elements.size();
+        if (near.certainly_empty) return {Status::miss, Interval<double>::empty_set()};
+        const Isolation isolation = search_from(outside_until, field, near, ray, options, counts);
+        if (isolation.status != Status::unresolved) return isolation;
+    }
+    return search_from(outside_until, field, list, ray, options, counts);
+}
+
 }  // namespace
 
 Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
@@ -84,7 +103,7 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
 
 void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                           const MethodOptions& options, std::span<Isolation> isolations,
-                          std::span<SurfacePoint> surfaces, Counts& counts) const {
+                          BundleSurfaces* surfaces, Counts& counts) const {
     if (!options.skipping.packets) {
         counts.skipping.rays_alone += rays.size();
         Method::trace_bundle(field, list, rays, options, isolations, surfaces, counts);
@@ -103,25 +122,24 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
             isolations[k] =
                 isolate_from(isolations[k].t.lo, field, list, rays.ray(k), options, counts);
         }
-        if (surfaces.empty() || isolations[k].status == Status::miss ||
-            !std::isnan(surfaces[k].normal.x)) {
+        if (surfaces == nullptr || isolations[k].status == Status::miss || surfaces->found(k)) {
             continue;
         }
         m[k] = midpoint(isolations[k].t);
         left = true;
     }
-    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, surfaces);
+    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces);
 }
 
 void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
-                            std::span<SurfacePoint> surfaces) const {
+                            BundleSurfaces& surfaces) const {
     thread_local PacketTracer packets;
     packets.surface(field, list, rays, options.tolerance, m, surfaces);
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        // NaN: the packets leave it to one ray at a time.
-        if (std::isfinite(m[k]) && std::isnan(surfaces[k].normal.x)) {
-            surfaces[k] = surface(field, list, rays.ray(k), m[k], options);
+        // What the packets leave to one ray at a time.
+        if (std::isfinite(m[k]) && !surfaces.found(k)) {
+            surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
         }
     }
 }

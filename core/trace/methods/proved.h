@@ -18,10 +18,10 @@ class Proved final : public Method {
                                     const MethodOptions& options, Counts& counts) const override;
     void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                       const MethodOptions& options, std::span<Isolation> isolations,
-                      std::span<SurfacePoint> surfaces, Counts& counts) const override;
+                      BundleSurfaces* surfaces, Counts& counts) const override;
     void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                         const MethodOptions& options, std::span<const double> m,
-                        std::span<SurfacePoint> surfaces) const override;
+                        BundleSurfaces& surfaces) const override;
 };
 
 }  // namespace ivory

@@ -92,7 +92,7 @@ TEST(Render, PixelsAreTheAnswersOfTheirRays) {
         const ElementList all = all_elements(*picture.field);
         Canvas canvas(frame_width, frame_height, true);
         render(picture, canvas, {});
-        std::size_t roots = 0;
+        std::size_t roots = 0, differing = 0;
         for (int j = 0; j < frame_height; ++j) {
             for (int i = 0; i < frame_width; ++i) {
                 const Ray ray = primary_ray(picture.view, frame_width, frame_height, i, j);
@@ -114,12 +114,18 @@ TEST(Render, PixelsAreTheAnswersOfTheirRays) {
                     ASSERT_NEAR(canvas.frame.surface[p].color[axis], answer.surface.color[axis],
                                 1e-4);
                 }
-                ASSERT_EQ(canvas.frame.color[p],
-                          shade(picture.lighting, ray.direction, canvas.frame.surface[p]));
+                // What is only looked at is made in float.
+                const Rgba8 a = canvas.frame.color[p];
+                const Rgba8 b = shade(picture.lighting, ray.direction, canvas.frame.surface[p]);
+                ASSERT_LE(std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}),
+                          1)
+                    << i << ", " << j;
+                differing += a != b;
             }
         }
         EXPECT_GT(roots, canvas.frame.size() / 10);
         EXPECT_LT(roots, canvas.frame.size() / 2);
+        EXPECT_LT(differing, roots / 100);
     }
 }
 

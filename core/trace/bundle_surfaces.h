@@ -1,0 +1,53 @@
+// What the surface is like where the rays of a bundle meet it, as structure of arrays.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "core/trace/ray.h"
+#include "core/trace/ray_bundle.h"
+
+namespace ivory {
+
+struct BundleSurfaces {
+    static constexpr std::size_t room = RayBundle::capacity + 16;  // vectors are read whole
+
+    // Normals and colours to shade with; nx is NaN where there is no surface, or none found yet.
+    alignas(64) std::array<float, room> nx, ny, nz, r, g, b;
+
+    // Whether `points` are wanted too: the same in double, as answers tell them.
+    bool exact = false;
+    std::array<SurfacePoint, RayBundle::capacity> points;
+
+    // Nothing is found yet.
+    void clear(std::size_t count) {
+        std::fill_n(nx.begin(), count + (room - RayBundle::capacity),
+                    std::numeric_limits<float>::quiet_NaN());
+        if (!exact) return;
+        for (std::size_t k = 0; k < count; ++k) {
+            points[k].normal.x = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    void set(std::size_t k, const SurfacePoint& point) {
+        set_seen(k, point);
+        if (exact) points[k] = point;
+    }
+    void set_seen(std::size_t k, const SurfacePoint& point) {
+        nx[k] = static_cast<float>(point.normal.x);
+        ny[k] = static_cast<float>(point.normal.y);
+        nz[k] = static_cast<float>(point.normal.z);
+        r[k] = static_cast<float>(point.color.x);
+        g[k] = static_cast<float>(point.color.y);
+        b[k] = static_cast<float>(point.color.z);
+    }
+    void forget(std::size_t k) { nx[k] = std::numeric_limits<float>::quiet_NaN(); }
+    [[nodiscard]] bool seen(std::size_t k) const { return !std::isnan(nx[k]); }
+    [[nodiscard]] bool found(std::size_t k) const {
+        return seen(k) && !(exact && std::isnan(points[k].normal.x));
+    }
+};
+
+}  // namespace ivory
