@@ -11,9 +11,9 @@ constexpr double margin = 0x1p-46;
 constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
 
 // Windows are halved until f'' could bend f by less than this share of T over one of them.
-constexpr double bend_limit = 2;
+constexpr double bend_limit = 8;
 
-constexpr double coarse_cut_share = 0x1p-26, fine_cut_share = 0x1p-40;
+constexpr double coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-40;
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.

@@ -259,6 +259,7 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
         const RayLanes<Tag> rays = rays_of(d, window, unit, lanes, first);
         const Vec3v<Tag>&direction = rays.direction, &middle = rays.middle;
         V<Tag> tau = begin, guess_lo = zero, guess_hi = zero;
+        V<Tag> last_tau = zero, last_slope = zero;  // of the step before
         M<Tag> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
         V<Tag> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
         for (int step = 0; step < most_steps; ++step) {
@@ -314,8 +315,17 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
             // Lanes change their ways.
             guess_lo = hn::IfThenElse(rises, tau, guess_lo);
             guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
-            const V<Tag> first_guess =
-                hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), tau), latest_tau);
+            // The zero of f + f' x + f'' x^2 / 2, with f'' from the step before: a guess.
+            const V<Tag> curvature = hn::Div(hn::Sub(value.slope, last_slope),
+                                             hn::Max(hn::Sub(tau, last_tau), c(S::tiny)));
+            const V<Tag> bent =
+                hn::MulAdd(value.slope, value.slope,
+                           hn::Mul(hn::Mul(c(-2), value.f), step > 0 ? curvature : zero));
+            const V<Tag> onward = hn::Div(hn::Mul(c(-2), value.f),
+                                          hn::Add(value.slope, hn::Sqrt(hn::Max(bent, zero))));
+            const V<Tag> first_guess = hn::Min(hn::Max(hn::Add(tau, onward), tau), latest_tau);
+            last_tau = tau;
+            last_slope = value.slope;
             tau = hn::IfThenElse(steps_on, next, tau);
             tau = hn::IfThenElse(guessing, newton, tau);
             tau = hn::IfThenElse(rises, first_guess, tau);
