@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 
+#include "core/render/pages.h"
 #include "core/trace/ray.h"
 
 namespace ivory {
@@ -22,7 +24,10 @@ class Plane {
   public:
     Plane() = default;
     explicit Plane(std::size_t size)
-        : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+        : values_(static_cast<T*>(size > 0 ? allocate_pages(size * sizeof(T)) : nullptr)),
+          size_(size) {
+        std::uninitialized_default_construct_n(values_.get(), size);
+    }
 
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] bool empty() const { return size_ == 0; }
@@ -30,7 +35,11 @@ class Plane {
     [[nodiscard]] const T& operator[](std::size_t i) const { return values_[i]; }
 
   private:
-    std::unique_ptr<T[]> values_;
+    static_assert(std::is_trivially_destructible_v<T>);
+    struct Free {
+        void operator()(T* values) const { free_pages(values); }
+    };
+    std::unique_ptr<T[], Free> values_;
     std::size_t size_ = 0;
 };
 

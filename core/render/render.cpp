@@ -37,7 +37,7 @@ struct Tally {
 struct TracedTile {
     RayBundle rays;
     std::array<std::uint32_t, pixels_in_tile> pixel;  // in the frame
-    std::array<Isolation, pixels_in_tile> isolations;
+    BundleIsolations isolations;
     BundleSurfaces surfaces;
     alignas(64) std::array<Rgba8, pixels_in_tile> colors;
 
@@ -355,12 +355,9 @@ class FrameJob::Work {
         Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
         for (int j = rect.y0; j < rect.y1; ++j) {
-            for (std::size_t p = frame.at(rect.x0, j),
-                             end = p + static_cast<std::size_t>(rect.width());
-                 p < end; ++p) {
-                frame.status[p] = Status::miss;
-                frame.color[p] = picture_.lighting.background;
-            }
+            const std::size_t p = frame.at(rect.x0, j);
+            std::fill_n(&frame.status[p], rect.width(), Status::miss);
+            std::fill_n(&frame.color[p], rect.width(), picture_.lighting.background);
         }
         TileState& tile = canvas_.tiles[index];
         tile.stride = 1;
@@ -377,7 +374,7 @@ class FrameJob::Work {
         const Clock::time_point start = Clock::now();
         TracedTile traced;
         gather(traced, index, stride, first ? 0 : tile.stride);
-        const std::span<Isolation> isolations(traced.isolations.data(), traced.size());
+        BundleIsolations& isolations = traced.isolations;
         const Field& field = *picture_.field;
         traced.surfaces.exact = !canvas_.frame.surface.empty();
         picture_.method->trace_bundle(field, tile.list, traced.rays, picture_.options, isolations,
@@ -388,12 +385,12 @@ class FrameJob::Work {
         bool any = false;
         for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
             again[k] = infinity<double>;
-            if (isolations[k].status != Status::unresolved) continue;
+            if (isolations.status[k] != Status::unresolved) continue;
             ++tally.counts.skipping.rays_alone;
-            isolations[k] = picture_.method->isolate(field, all_, traced.rays.ray(k),
-                                                     picture_.options, tally.counts);
+            isolations.set(k, picture_.method->isolate(field, all_, traced.rays.ray(k),
+                                                       picture_.options, tally.counts));
             traced.surfaces.forget(k);
-            if (!wants_surface() || !possibly_hit(isolations[k].status)) continue;
+            if (!wants_surface() || !possibly_hit(isolations.status[k])) continue;
             again[k] = midpoint(isolations[k].t);
             any = true;
         }
@@ -483,22 +480,38 @@ class FrameJob::Work {
             tile.enclosure_width_max = 0;
             tile.unresolved_width_max = 0;
         }
-        for (std::size_t k = 0; k < traced.size(); ++k) {
+        const bool colored = settings_.task != Task::trace;
+        const BundleIsolations& isolations = traced.isolations;
+        // Pixels that are neighbours in the frame go there together.
+        for (std::size_t k = 0; k < traced.size();) {
             const std::size_t p = traced.pixel[k];
-            const Isolation& isolation = traced.isolations[k];
-            frame.status[p] = isolation.status;
-            if (settings_.task != Task::trace) frame.color[p] = traced.colors[k];
-            ++tile.pixels[static_cast<std::size_t>(isolation.status)];
-            if (!possibly_hit(isolation.status)) continue;
-            frame.t_lo[p] = isolation.t.lo;
-            frame.t_hi[p] = isolation.t.hi;
-            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
+            std::size_t run = 1;
+            while (run < 4 && k + run < traced.size() && traced.pixel[k + run] == p + run) ++run;
+            std::copy_n(&isolations.status[k], run, &frame.status[p]);
+            if (colored) std::copy_n(&traced.colors[k], run, &frame.color[p]);
+            if (any_hit(isolations, k, run)) {
+                std::copy_n(&isolations.t_lo[k], run, &frame.t_lo[p]);
+                std::copy_n(&isolations.t_hi[k], run, &frame.t_hi[p]);
+                if (!frame.surface.empty())
+                    std::copy_n(&traced.surfaces.points[k], run, &frame.surface[p]);
+            }
+            k += run;
+        }
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            const Status status = isolations.status[k];
+            ++tile.pixels[static_cast<std::size_t>(status)];
+            if (!possibly_hit(status)) continue;
             // Primary rays have length 1, so that a span of t is a length.
-            double& widest = isolation.status == Status::unresolved ? tile.unresolved_width_max
-                                                                    : tile.enclosure_width_max;
-            widest = std::max(widest, width(isolation.t));
+            double& widest =
+                status == Status::unresolved ? tile.unresolved_width_max : tile.enclosure_width_max;
+            widest = std::max(widest, sub_up(isolations.t_hi[k], isolations.t_lo[k]));
         }
         tile.stride = std::min(stride, tile_side);
+    }
+
+    static bool any_hit(const BundleIsolations& isolations, std::size_t first, std::size_t count) {
+        return std::any_of(&isolations.status[first], &isolations.status[first] + count,
+                           possibly_hit);
     }
 
     // Colours, lights and background anew, from the t that stand in the frame.
@@ -515,7 +528,6 @@ class FrameJob::Work {
             std::array<double, pixels_in_tile> m;
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
-                traced.isolations[k] = {frame.status[p], {}};
                 m[k] = possibly_hit(frame.status[p]) ? midpoint(frame.t(p)) : infinity<double>;
             }
             find_surface(traced, tile.list, m);

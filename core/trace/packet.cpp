@@ -68,14 +68,14 @@ void PacketTracer::surface_in(Window& window, const BundlePart& part, const Fiel
 }
 
 void PacketTracer::isolate(const Field& field, const ElementList& list, const RayBundle& rays,
-                           const Settings& settings, std::span<Isolation> isolations,
+                           const Settings& settings, BundleIsolations& isolations,
                            BundleSurfaces* surfaces, Counts& counts) {
     if (surfaces != nullptr) surfaces->clear(rays.count);
-    const Interval<double> nothing = Interval<double>::empty_set();
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
                              settings.skipping.windows)) {
-        std::fill(isolations.begin(), isolations.end(),
-                  Isolation{Status::unresolved, {0.0, infinity<double>}});
+        for (std::size_t k = 0; k < rays.count; ++k) {
+            isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
+        }
         return;
     }
     const PacketSteps& steps = packet_steps();
@@ -140,16 +140,12 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
     counts.skipping.stretches += bundle_field_.stretches();
     counts.skipping.stretches_ended += bundle_field_.stretches_ended();
     for (std::size_t k = 0; k < rays.count; ++k) {
-        switch (lanes_.state[k]) {
-            case Lanes::walking:
-                isolations[k] = {Status::miss, nothing};
-                break;
-            case Lanes::hit:
-                isolations[k] = {Status::hit, {lanes_.t_lo[k], lanes_.t_hi[k]}};
-                break;
-            default:
-                isolations[k] = {Status::unresolved, {lanes_.t_lo[k], infinity<double>}};
-        }
+        const std::int32_t state = lanes_.state[k];
+        isolations.status[k] = state == Lanes::walking ? Status::miss
+                               : state == Lanes::hit   ? Status::hit
+                                                       : Status::unresolved;
+        isolations.t_lo[k] = lanes_.t_lo[k];
+        isolations.t_hi[k] = state == Lanes::hit ? lanes_.t_hi[k] : infinity<double>;
     }
 }
 

@@ -17,6 +17,7 @@
 #include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
+#include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
 #include "core/trace/packet_steps.h"
 #include "core/trace/ray.h"
@@ -37,8 +38,8 @@ class PacketTracer {
     // on [0, t.lo). `list` has to be valid on the bundle. Unless `surfaces` is null it gets what
     // `surface` would give for the hits' midpoints.
     void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
-                 const Settings& settings, std::span<Isolation> isolations,
-                 BundleSurfaces* surfaces, Counts& counts);
+                 const Settings& settings, BundleIsolations& isolations, BundleSurfaces* surfaces,
+                 Counts& counts);
 
     // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
     // `found` then have to be found by other means.

@@ -21,14 +21,14 @@ SurfacePoint Method::surface(const Field& field, const ElementList& list, const 
 }
 
 void Method::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                          const MethodOptions& options, std::span<Isolation> isolations,
+                          const MethodOptions& options, BundleIsolations& isolations,
                           BundleSurfaces* surfaces, Counts& counts) const {
     if (surfaces != nullptr) surfaces->clear(rays.size());
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        isolations[k] = isolate(field, list, rays.ray(k), options, counts);
-        const Status status = isolations[k].status;
-        if (surfaces == nullptr || !possibly_hit(status)) continue;
-        surfaces->set(k, surface(field, list, rays.ray(k), midpoint(isolations[k].t), options));
+        const Isolation isolation = isolate(field, list, rays.ray(k), options, counts);
+        isolations.set(k, isolation);
+        if (surfaces == nullptr || !possibly_hit(isolation.status)) continue;
+        surfaces->set(k, surface(field, list, rays.ray(k), midpoint(isolation.t), options));
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/field/field.h"
 #include "core/field/support.h"
+#include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
@@ -43,7 +44,7 @@ class Method {
     // The same for all rays of a bundle, for which `list` has to be valid: one isolation for each,
     // and, unless `surfaces` is null, the surface at the midpoints of those that may be hits.
     virtual void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                              const MethodOptions& options, std::span<Isolation> isolations,
+                              const MethodOptions& options, BundleIsolations& isolations,
                               BundleSurfaces* surfaces, Counts& counts) const;
 
     // Normal and colour of each ray at its m; where that is not finite, they stay.

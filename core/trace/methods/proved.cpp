@@ -102,7 +102,7 @@ Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray
 }
 
 void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                          const MethodOptions& options, std::span<Isolation> isolations,
+                          const MethodOptions& options, BundleIsolations& isolations,
                           BundleSurfaces* surfaces, Counts& counts) const {
     if (!options.skipping.packets) {
         counts.skipping.rays_alone += rays.size();
@@ -117,12 +117,12 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
-        if (isolations[k].status == Status::unresolved) {
+        if (isolations.status[k] == Status::unresolved) {
             ++counts.skipping.rays_alone;
-            isolations[k] =
-                isolate_from(isolations[k].t.lo, field, list, rays.ray(k), options, counts);
+            isolations.set(
+                k, isolate_from(isolations.t_lo[k], field, list, rays.ray(k), options, counts));
         }
-        if (surfaces == nullptr || isolations[k].status == Status::miss || surfaces->found(k)) {
+        if (surfaces == nullptr || isolations.status[k] == Status::miss || surfaces->found(k)) {
             continue;
         }
         m[k] = midpoint(isolations[k].t);

@@ -17,7 +17,7 @@ class Proved final : public Method {
     [[nodiscard]] Isolation isolate(const Field& field, const ElementList& list, const Ray& ray,
                                     const MethodOptions& options, Counts& counts) const override;
     void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
-                      const MethodOptions& options, std::span<Isolation> isolations,
+                      const MethodOptions& options, BundleIsolations& isolations,
                       BundleSurfaces* surfaces, Counts& counts) const override;
     void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                         const MethodOptions& options, std::span<const double> m,

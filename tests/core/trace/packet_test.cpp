@@ -79,19 +79,17 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                 if (!usable(ray)) continue;
                 const double spread = std::pow(10.0, random.uniform(-5, -0.7));
                 const auto rays = bundle_around(ray, spread, 5 + random.below(40), random);
-                std::array<Isolation, RayBundle::capacity> found;
+                BundleIsolations found;
                 Counts counts;
-                packets.isolate(field, list, *rays, settings, {found.data(), rays->size()}, nullptr,
-                                counts);
+                packets.isolate(field, list, *rays, settings, found, nullptr, counts);
                 // Every third of them without the others.
                 const auto some = std::make_unique<RayBundle>();
                 some->bundle = rays->bundle;
                 for (std::size_t k = 0; k < rays->size(); k += 3) {
                     some->add(rays->ray(k).direction);
                 }
-                std::array<Isolation, RayBundle::capacity> again;
-                packets.isolate(field, list, *some, settings, {again.data(), some->size()}, nullptr,
-                                counts);
+                BundleIsolations again;
+                packets.isolate(field, list, *some, settings, again, nullptr, counts);
                 for (std::size_t k = 0; k < some->size(); ++k) {
                     ASSERT_EQ(again[k].status, found[3 * k].status);
                     if (again[k].status != Status::hit) continue;
@@ -163,12 +161,12 @@ Isolation alone_in_packet(const Scene& scene, const Ray& ray, double tolerance) 
     const auto rays = std::make_unique<RayBundle>();
     rays->add(ray.direction);
     rays->bundle = {ray.origin, ray.direction, 1e-15};
-    Isolation found;
+    BundleIsolations found;
     Counts counts;
     packets.isolate(field, all_elements(field), *rays,
-                    {tolerance, 0.5 * std::min(tolerance, 0x1p-20) * field.least_width},
-                    {&found, 1}, nullptr, counts);
-    return found;
+                    {tolerance, 0.5 * std::min(tolerance, 0x1p-20) * field.least_width}, found,
+                    nullptr, counts);
+    return found[0];
 }
 
 // The axis passes through a skeleton far away and the surface is tiny around it: the distances at
@@ -240,12 +238,12 @@ TEST(Packet, WorkIsBounded) {
     PacketTracer packets;
     Random random(6);
     const auto rays = bundle_around({{0.1, 0.2, 20}, {0, 0, -1}}, 1e-3, 256, random);
-    std::array<Isolation, RayBundle::capacity> found;
+    BundleIsolations found;
     Counts counts;
     packets.isolate(field, all_elements(field), *rays, {1e-6, 0.5 * 0x1p-20 * field.least_width},
                     found, nullptr, counts);
     EXPECT_LT(counts.evaluations, 256u * 2 * 1024);
-    for (const Isolation& isolation : found) EXPECT_NE(isolation.status, Status::miss);
+    for (const Status status : found.status) EXPECT_NE(status, Status::miss);
 }
 
 // What a picture shows is what answers tell, but for float: normals within 2^-10 and colours within
@@ -263,12 +261,12 @@ TEST(Packet, WhatIsSeenIsTheSurfaceOfTheAnswer) {
         Random random(seed);
         for (const Ray& toward : nasty_rays(scene, RayKind::random, 4, seed)) {
             const auto rays = bundle_around(toward, 0.05, 100, random);
-            std::array<Isolation, RayBundle::capacity> found;
+            BundleIsolations found;
             const auto surfaces = std::make_unique<BundleSurfaces>();
             surfaces->exact = true;
             Counts counts;
-            proved.trace_bundle(field, all, *rays, {.tolerance = 1e-6}, {found.data(), 100},
-                                surfaces.get(), counts);
+            proved.trace_bundle(field, all, *rays, {.tolerance = 1e-6}, found, surfaces.get(),
+                                counts);
             for (std::size_t k = 0; k < 100; ++k) {
                 ASSERT_EQ(surfaces->seen(k), possibly_hit(found[k].status));
                 if (!surfaces->seen(k)) continue;
@@ -304,7 +302,7 @@ TEST(Packet, InstructionSetsAgree) {
         const auto toward = nasty_rays(scene, RayKind::random, 1, seed).front();
         Random random(seed);
         const auto rays = bundle_around(toward, 0.3, count, random);
-        std::vector<std::array<Isolation, RayBundle::capacity>> found(targets.size());
+        std::vector<BundleIsolations> found(targets.size());
         for (std::size_t n = 0; n < targets.size(); ++n) {
             hwy::SetSupportedTargetsForTest(targets[n]);
             hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -316,7 +314,7 @@ TEST(Packet, InstructionSetsAgree) {
         hwy::SetSupportedTargetsForTest(0);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
         for (std::size_t k = 0; k < count; ++k) {
-            const Isolation& first = found.front()[k];
+            const Isolation first = found.front()[k];
             hits += first.status == Status::hit;
             for (const auto& other : found) {
                 const Status a = first.status, b = other[k].status;
