@@ -5,7 +5,7 @@
 # What configuring and building one preset takes. libimgui-dev's pkg-config file wants libstb-dev.
 build_packages=(
     cmake ninja-build g++ pkg-config
-    nlohmann-json3-dev libcli11-dev libpng-dev libhwy-dev
+    nlohmann-json3-dev libcli11-dev libpng-dev zlib1g-dev libhwy-dev
     libglfw3-dev libglm-dev libimgui-dev libstb-dev
     libgtest-dev libmpfr-dev
 )

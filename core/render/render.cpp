@@ -354,10 +354,12 @@ class FrameJob::Work {
     void leave_empty(std::size_t index) {
         Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
+        std::array<Rgba8, tile_side> row;
+        row.fill(picture_.lighting.background);
         for (int j = rect.y0; j < rect.y1; ++j) {
             const std::size_t p = frame.at(rect.x0, j);
             std::fill_n(&frame.status[p], rect.width(), Status::miss);
-            std::fill_n(&frame.color[p], rect.width(), picture_.lighting.background);
+            std::copy_n(row.begin(), rect.width(), &frame.color[p]);
         }
         TileState& tile = canvas_.tiles[index];
         tile.stride = 1;
@@ -472,7 +474,6 @@ class FrameJob::Work {
     }
 
     void commit(std::size_t index, int stride, bool first, const TracedTile& traced) {
-        Frame& frame = canvas_.frame;
         TileState& tile = canvas_.tiles[index];
         if (first) {
             tile.empty = false;
@@ -482,20 +483,16 @@ class FrameJob::Work {
         }
         const bool colored = settings_.task != Task::trace;
         const BundleIsolations& isolations = traced.isolations;
-        // Pixels that are neighbours in the frame go there together.
         for (std::size_t k = 0; k < traced.size();) {
+            // Neighbours in the frame go there together.
             const std::size_t p = traced.pixel[k];
-            std::size_t run = 1;
-            while (run < 4 && k + run < traced.size() && traced.pixel[k + run] == p + run) ++run;
-            std::copy_n(&isolations.status[k], run, &frame.status[p]);
-            if (colored) std::copy_n(&traced.colors[k], run, &frame.color[p]);
-            if (any_hit(isolations, k, run)) {
-                std::copy_n(&isolations.t_lo[k], run, &frame.t_lo[p]);
-                std::copy_n(&isolations.t_hi[k], run, &frame.t_hi[p]);
-                if (!frame.surface.empty())
-                    std::copy_n(&traced.surfaces.points[k], run, &frame.surface[p]);
+            if (k + 4 <= traced.size() && traced.pixel[k + 3] == p + 3) {
+                commit_run<4>(traced, k, p, colored);
+                k += 4;
+            } else {
+                commit_run<1>(traced, k, p, colored);
+                k += 1;
             }
-            k += run;
         }
         for (std::size_t k = 0; k < traced.size(); ++k) {
             const Status status = isolations.status[k];
@@ -509,9 +506,19 @@ class FrameJob::Work {
         tile.stride = std::min(stride, tile_side);
     }
 
-    static bool any_hit(const BundleIsolations& isolations, std::size_t first, std::size_t count) {
-        return std::any_of(&isolations.status[first], &isolations.status[first] + count,
-                           possibly_hit);
+    // `count` rays from k on, whose pixels stand in the frame from p on.
+    template <std::size_t count>
+    void commit_run(const TracedTile& traced, std::size_t k, std::size_t p, bool colored) const {
+        Frame& frame = canvas_.frame;
+        const BundleIsolations& isolations = traced.isolations;
+        std::copy_n(&isolations.status[k], count, &frame.status[p]);
+        if (colored) std::copy_n(&traced.colors[k], count, &frame.color[p]);
+        if (std::none_of(&isolations.status[k], &isolations.status[k] + count, possibly_hit))
+            return;
+        std::copy_n(&isolations.t_lo[k], count, &frame.t_lo[p]);
+        std::copy_n(&isolations.t_hi[k], count, &frame.t_hi[p]);
+        if (frame.surface.empty()) return;
+        std::copy_n(&traced.surfaces.points[k], count, &frame.surface[p]);
     }
 
     // Colours, lights and background anew, from the t that stand in the frame.
