@@ -13,7 +13,8 @@ constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
 // Windows are halved until f'' could bend f by less than this share of T over one of them.
 constexpr double bend_limit = 8;
 
-constexpr double coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-40;
+constexpr double coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
+constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.
@@ -78,6 +79,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     least_width_ = field.least_width;
     coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
+    refined_cut_ = fine_cut_ * refined_cut_share;
     rest_above_ = std::max(list.rest.hi, 0.0) * scale_ * more;
     rest_below_ = std::max(-list.rest.lo, 0.0) * scale_ * more;
 
@@ -89,20 +91,27 @@ Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const
     return {origin_, part.axis, part.spread * more + 0x1p-49, t0, t1};
 }
 
+PeakSums BundleField::bound(const Stretch& on, double cut, const ActiveElements& candidates,
+                            double rest_above, double rest_below, Bounded& result) const {
+    const PeakSums peaks =
+        bundle_steps().bound(*field_, on, scale_, cut, candidates, result.active);
+    const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
+    result.rest_above = (rest_above + peaks.rest_above) * sums;
+    result.rest_below = (rest_below + peaks.rest_below) * sums;
+    return peaks;
+}
+
 bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1) {
     if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
     Bounded& here = bounded_by_depth_[depth];
-    const Bounded* parent = depth > 0 ? &bounded_by_depth_[depth - 1] : nullptr;
-    const ActiveElements& candidates = parent != nullptr ? parent->active : list_;
     const Stretch on = stretch(part, t0, t1);
-    const BundleSteps& steps = bundle_steps();
-
-    const PeakSums peaks = steps.bound(*field_, on, scale_, fine_cut_, candidates, here.active);
-    const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
-    here.rest_above =
-        ((parent != nullptr ? parent->rest_above : rest_above_) + peaks.rest_above) * sums;
-    here.rest_below =
-        ((parent != nullptr ? parent->rest_below : rest_below_) + peaks.rest_below) * sums;
+    PeakSums peaks;
+    if (depth == 0) {
+        peaks = bound(on, fine_cut_, list_, rest_above_, rest_below_, here);
+    } else {
+        const Bounded& parent = bounded_by_depth_[depth - 1];
+        peaks = bound(on, fine_cut_, parent.active, parent.rest_above, parent.rest_below, here);
+    }
     const double slack =
         static_cast<double>(here.active.size() + 4) * 0x1p-52 * (peaks.magnitude + threshold_);
     ++stretches_;
@@ -113,12 +122,11 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
     return true;
 }
 
-void BundleField::bend(std::size_t depth, const BundlePart& part, double t0, double t1) {
-    Bounded& here = bounded_by_depth_[depth];
-    const BendSums bends = bundle_steps().bend(*field_, stretch(part, t0, t1), scale_, here.active);
-    here.rise = bends.rise * (1 + 0x1p-30);
-    here.fall = bends.fall * (1 + 0x1p-30);
-    here.kinks = bends.kinks;
+void BundleField::bend(const Stretch& on, Bounded& bounded) const {
+    const BendSums bends = bundle_steps().bend(*field_, on, scale_, bounded.active);
+    bounded.rise = bends.rise * (1 + 0x1p-30);
+    bounded.fall = bends.fall * (1 + 0x1p-30);
+    bounded.kinks = bends.kinks;
 }
 
 bool BundleField::splits(std::size_t depth, double t0, double t1) const {
@@ -171,7 +179,7 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.is_complete = w.fine_usable = false;
+    w.is_complete = w.fine_usable = is_refined_ = false;
 
     const StageSums sums =
         bundle_steps().coarse(*field_, finished_, scale_, unit_, coarse_cut_, here.active, w);
@@ -183,14 +191,31 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
                       sums.full_slope * unit_ < 1e14 && w.coarse_bounds.slope < 1e14;
 }
 
-void BundleField::complete(Window& w) {
-    if (w.is_complete) return;
-    w.is_complete = true;
-    const Bounded& here = bounded_by_depth_[finished_depth_];
-    const StageSums sums = bundle_steps().fine(*field_, finished_, scale_, here.active, w);
-    w.fine_bounds = stage_bounds(sums, 0x1p-53, w.fine.size(), here.active.size(), threshold_,
-                                 here.rest_above, here.rest_below, 1, 1e-280);
+void BundleField::complete(const Stretch& on, const Bounded& bounded, Window& w) const {
+    const StageSums sums = bundle_steps().fine(*field_, on, scale_, bounded.active, w);
+    w.fine_bounds = stage_bounds(sums, 0x1p-53, w.fine.size(), bounded.active.size(), threshold_,
+                                 bounded.rest_above, bounded.rest_below, 1, 1e-280);
     w.fine_usable = sums.usable;
+    w.is_complete = true;
+}
+
+void BundleField::complete(Window& w) {
+    if (!w.is_complete) complete(finished_, bounded_by_depth_[finished_depth_], w);
+}
+
+const Window& BundleField::refined() {
+    if (is_refined_) return refined_;
+    is_refined_ = true;
+    bound(finished_, refined_cut_, list_, rest_above_, rest_below_, refined_bounded_);
+    bend(finished_, refined_bounded_);
+    refined_.begin = window_.begin;
+    refined_.middle = window_.middle;
+    refined_.end = window_.end;
+    refined_.axis = window_.axis;
+    refined_.rise = refined_bounded_.rise;
+    refined_.fall = refined_bounded_.fall;
+    complete(finished_, refined_bounded_, refined_);
+    return refined_;
 }
 
 }  // namespace ivory

@@ -126,6 +126,10 @@ class BundleField {
     // The fine stage of the window that is being visited, if it is not there yet.
     void complete(Window& window);
 
+    // The window that is being visited, with a fine stage that leaves out next to nothing, and
+    // bounds of f'' for it. No coarse stage.
+    const Window& refined();
+
     // Bounded since `build`, and how many of them were ended by the sum of peaks.
     [[nodiscard]] std::uint64_t stretches() const { return stretches_; }
     [[nodiscard]] std::uint64_t stretches_ended() const { return stretches_ended_; }
@@ -150,7 +154,11 @@ class BundleField {
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     // False: f < 0 on all of [t0, t1] for every ray.
     bool bound(std::size_t depth, const BundlePart& part, double t0, double t1);
-    void bend(std::size_t depth, const BundlePart& part, double t0, double t1);
+    // Of `candidates` those with |F| above `cut`; the others join what they could add.
+    PeakSums bound(const Stretch& on, double cut, const ActiveElements& candidates,
+                   double rest_above, double rest_below, Bounded& result) const;
+    void bend(const Stretch& on, Bounded& bounded) const;
+    void complete(const Stretch& on, const Bounded& bounded, Window& window) const;
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
     [[nodiscard]] bool parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                     double t1) const;
@@ -172,7 +180,7 @@ class BundleField {
         const double middle = 0.5 * (t0 + t1);
         const bool divisible = middle > t0 && middle < t1 && depth < greatest_depth;
         const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
-        if (!is_long) bend(depth, part, t0 - pad, t1 + pad);
+        if (!is_long) bend(stretch(part, t0 - pad, t1 + pad), bounded_by_depth_[depth]);
         if (is_long || (divisible && splits(depth, t0, t1))) {
             return descend(depth + 1, part, t0, middle, wanted, visit) &&
                    descend(depth + 1, part, middle, t1, wanted, visit);
@@ -195,9 +203,12 @@ class BundleField {
     std::size_t finished_depth_ = 0;
     Stretch finished_;  // of the window
     Window window_;
+    Bounded refined_bounded_;
+    Window refined_;
+    bool is_refined_ = false;  // refined_ is that of the window
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
-    double coarse_cut_ = 0, fine_cut_ = 0;
+    double coarse_cut_ = 0, fine_cut_ = 0, refined_cut_ = 0;
     double rest_above_ = 0, rest_below_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;

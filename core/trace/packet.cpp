@@ -39,7 +39,7 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
 
 // Of the lanes whose m lies in the window: in float, and in double where that is wanted or float
 // loses the direction.
-void PacketTracer::surface_in(Window& window, const BundlePart& part, const Field& field,
+void PacketTracer::surface_in(const Window& window, const BundlePart& part, const Field& field,
                               BundleSurfaces& surfaces) {
     const auto wanted = [&](std::size_t k) { return m_[k] >= window.begin && m_[k] < window.end; };
     bool any = false;
@@ -57,9 +57,8 @@ void PacketTracer::surface_in(Window& window, const BundlePart& part, const Fiel
         t_.push_back(m_[k]);
     }
     if (index_.empty()) return;
-    bundle_field_.complete(window);
     points_.resize(index_.size());
-    packet_steps().surface(window, field, lanes_, index_, t_.data(), points_.data());
+    packet_steps().surface(bundle_field_.refined(), field, lanes_, index_, t_.data(), points_.data());
     for (std::size_t i = 0; i < index_.size(); ++i) {
         const std::size_t k = index_[i];
         if (!surfaces.seen(k)) surfaces.set_seen(k, points_[i]);
@@ -114,9 +113,18 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                 return any(all, Lanes::walking);
             }
             bundle_field_.complete(window);
+            // What the fine list leaves open, with one that leaves out next to nothing.
             const auto enclose = [&](Lanes::State otherwise) {
-                return steps.enclose(window, T, settings.greatest_cell, part.first, part.end,
-                                     otherwise, lanes_);
+                const std::uint64_t evaluations =
+                    steps.enclose(window, T, settings.greatest_cell, 0, part.first, part.end,
+                                  Lanes::hidden, lanes_);
+                if (!any(part, Lanes::hidden)) return evaluations;
+                const Window& refined = bundle_field_.refined();
+                std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                             std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
+                const double left_out = window.fine_bounds.above + window.fine_bounds.below;
+                return evaluations + steps.enclose(refined, T, settings.greatest_cell, left_out,
+                                                   part.first, part.end, otherwise, lanes_);
             };
             std::uint64_t fine = enclose(Lanes::doubtful);
             if (any(part, Lanes::doubtful)) {

@@ -48,7 +48,7 @@ class PacketTracer {
 
   private:
     void take(const RayBundle& rays, bool in_parts);
-    void surface_in(Window& window, const BundlePart& part, const Field& field,
+    void surface_in(const Window& window, const BundlePart& part, const Field& field,
                     BundleSurfaces& surfaces);
 
     BundleField bundle_field_;

@@ -402,8 +402,11 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
 // f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
 // least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
+// In a refined window g is another sum, and what rises before m - delta is that of the walk,
+// g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
+// g0 + left_out is below 0 there and before, and so is f.
 std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
-                            Lanes::State otherwise, Batch& batch, Lanes& lanes) {
+                            double left_out, Lanes::State otherwise, Batch& batch, Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
@@ -445,12 +448,12 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
                 evaluate(d, window.fine, window.fine_count, threshold, p, direction);
             const V<D> f_hi = hn::Add(value.f, c(bounds.above));
             const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
-            const V<D> size = hn::Max(hn::Abs(f_lo), hn::Abs(f_hi));
+            const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(left_out));
             const V<D> delta = hn::Div(hn::Mul(c(2.001), size), value.slope);
             const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
             const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
             const V<D> slope_hi = hn::Mul(hn::Add(value.slope, bend), c(1 + 0x1p-40));
-            // Then size / slope_lo < delta.
+            // Then size / slope_lo < delta, and f < -left_out at m - delta.
             const M<D> firm = hn::And(
                 hn::And(hn::Gt(value.slope, zero), hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
                 hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
@@ -494,8 +497,8 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
     return steps;
 }
 
-std::uint64_t enclose(const Window& window, double threshold, double half_width, std::size_t first,
-                      std::size_t end, Lanes::State otherwise, Lanes& lanes) {
+std::uint64_t enclose(const Window& window, double threshold, double half_width, double left_out,
+                      std::size_t first, std::size_t end, Lanes::State otherwise, Lanes& lanes) {
     Batch batch;
     std::uint64_t steps = 0;
     for (std::size_t k = first; k < end; ++k) {
@@ -512,11 +515,12 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
         batch.dz[at] = lanes.dz[k];
         batch.t[at] = lanes.guess[k];
         if (batch.count == widest) {
-            steps += enclose_batch(window, threshold, half_width, otherwise, batch, lanes);
+            steps +=
+                enclose_batch(window, threshold, half_width, left_out, otherwise, batch, lanes);
         }
     }
     if (batch.count > 0)
-        steps += enclose_batch(window, threshold, half_width, otherwise, batch, lanes);
+        steps += enclose_batch(window, threshold, half_width, left_out, otherwise, batch, lanes);
     return steps;
 }
 

@@ -26,6 +26,7 @@ struct Lanes {
         walking,    // f < 0 on [0, t) so far
         candidate,  // and, in this window, g rises from there to a root near `guess`
         hit,        // done: t_lo, t_hi
+        hidden,     // what the fine list leaves out hides on which side of a grid line the root is
         doubtful,   // float cannot decide on what happens in this window
         undecided,  // to be traced by other means from t_lo on: f < 0 up to there
         unused,
@@ -56,10 +57,11 @@ struct PacketSteps {
 
     // Encloses the candidates' roots, of lanes first .. end, in double, on the grid whose cell is
     // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
-    // become hits, or `otherwise`.
+    // become hits, or `otherwise`. For a refined window `left_out` is what the elements that it has
+    // more than the window of the walk add to f or take away, at most.
     std::uint64_t (*enclose)(const Window& window, double threshold, double half_width,
-                             std::size_t first, std::size_t end, Lanes::State otherwise,
-                             Lanes& lanes);
+                             double left_out, std::size_t first, std::size_t end,
+                             Lanes::State otherwise, Lanes& lanes);
 
     // Normal and colour at m[k] of those lanes k of first .. end for which that lies in the window,
     // in float: within 2^-8, or nx = NaN where float might lose more.

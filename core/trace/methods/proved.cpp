@@ -31,24 +31,29 @@ double greatest_cell(const Field& field, double tolerance) {
     return 0.5 * std::min(tolerance, 0x1p-20) * field.least_width;
 }
 
+struct Found {
+    Isolation isolation;
+    bool one_cell = true;  // a hit is no wider: no sign was hidden
+};
+
 // f < 0 certainly holds on [0, outside_until).
-Isolation search_from(double outside_until, const Field& field, const ElementList& list,
-                      const Ray& ray, const MethodOptions& options, Counts& counts) {
+Found search_from(double outside_until, const Field& field, const ElementList& list, const Ray& ray,
+                  const MethodOptions& options, Counts& counts) {
     // 1. The ray, scaled, as far as it is in the bounding box.
     const Search search = begin_search(field, list, ray, options);
-    if (search.over()) return search.answer;
+    if (search.over()) return {search.answer};
     const ScaledRay& scaled_ray = search.ray;
     const double least = std::ldexp(outside_until, -scaled_ray.shift) * (1 - 4 * unit_roundoff);
     const Interval<double> span =
         intersection(search.span, Interval<double>(least, infinity<double>));
-    if (is_empty(span)) return {Status::miss, span};
+    if (is_empty(span)) return {{Status::miss, span}};
 
     // 2. The field along it. A miss already where the peaks do not add up to T.
     thread_local FieldAlongRay along;
     along.build(field, list, scaled_ray.origin, scaled_ray.direction, span);
     ++counts.evaluations;
     counts.element_evaluations += list.elements.size();
-    if (along.certainly_outside()) return search.answer;
+    if (along.certainly_outside()) return {search.answer};
 
     // 3. The first root.
     const auto in_t = [&](double length) {
@@ -62,7 +67,8 @@ Isolation search_from(double outside_until, const Field& field, const ElementLis
     // 4. Two cells are always narrow enough. A wider bracket is judged by the element that matters
     // there.
     const double width = sub_up(isolation.t.hi, isolation.t.lo);
-    if (isolation.status == Status::hit && width > 2 * precision.cell_at(isolation.t.hi)) {
+    const double cell = precision.cell_at(isolation.t.hi);
+    if (isolation.status == Status::hit && width > 2 * cell) {
         const FieldSample middle =
             sample(field, list, scaled_ray.origin, scaled_ray.direction, midpoint(isolation.t));
         if (!(width <= in_t(options.tolerance * field.width[middle.strongest])))
@@ -72,11 +78,11 @@ Isolation search_from(double outside_until, const Field& field, const ElementLis
     if (isolation.status == Status::hit && !(isolation.t.hi < infinity<double>)) {
         isolation.status = Status::unresolved;  // t is beyond the doubles
     }
-    return isolation;
+    return {isolation, width <= cell};
 }
 
 // Against those elements alone that reach the ray, where there are many; if what the others could
-// add leaves it open, against all.
+// add hides a sign, against all.
 Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
                        const Ray& ray, const MethodOptions& options, Counts& counts) {
     constexpr std::size_t many = 48;
@@ -88,10 +94,11 @@ Isolation isolate_from(double outside_until, const Field& field, const ElementLi
         counts.skipping.list_elements += list.elements.size();
         counts.skipping.list_left_out += list.elements.size() - near.elements.size();
         if (near.certainly_empty) return {Status::miss, Interval<double>::empty_set()};
-        const Isolation isolation = search_from(outside_until, field, near, ray, options, counts);
-        if (isolation.status != Status::unresolved) return isolation;
+        const Found found = search_from(outside_until, field, near, ray, options, counts);
+        if (found.isolation.status == Status::miss) return found.isolation;
+        if (found.isolation.status == Status::hit && found.one_cell) return found.isolation;
     }
-    return search_from(outside_until, field, list, ray, options, counts);
+    return search_from(outside_until, field, list, ray, options, counts).isolation;
 }
 
 }  // namespace
