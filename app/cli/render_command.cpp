@@ -163,7 +163,8 @@ void run(const RenderArguments& arguments) {
             arguments.repeat == 1
                 ? ""
                 : std::to_string(run) + "/" + std::to_string(arguments.repeat) + ": ";
-        rendering = {};  // not two canvases at a time
+        stop_if_interrupted();  // a picture may be done before it is looked for again
+        rendering = {};         // not two canvases at a time
         rendering = render_once(scene, arguments, task, label, progress);
         runs.push_back(rendering.seconds);
     }

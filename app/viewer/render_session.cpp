@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <new>
@@ -83,7 +84,7 @@ struct Board {
     std::vector<std::uint8_t> blocks;      // by tile: of how many pixels a side it is made
     std::vector<std::uint16_t> done;       // by tile: its pixels that are this picture's
     std::vector<std::size_t> changed;      // tiles since the last poll, each once
-    std::vector<std::uint8_t> is_changed;  // by tile
+    std::vector<std::uint8_t> is_changed;  // by tile: 1: its colours, 3: its depth too
     std::vector<std::array<std::uint16_t, 5>> tile_pixels;
     std::array<std::uint64_t, 5> pixels{};  // by Status, of all tiles
     std::size_t tiles_missing = 0, tiles_coarse = 0;  // those that show nothing; no fine blocks
@@ -149,11 +150,16 @@ struct Board {
         const Frame& frame = canvas.frame;
         const TileState& tile = canvas.tiles[notice.tile];
         const PixelRect& rect = notice.rect;
-        for (int j = rect.y0; j < rect.y1; ++j)
+        for (int j = rect.y0; j < rect.y1 && !notice.same; ++j) {
+            if (notice.stride == 1) {
+                copy_row(frame, frame.at(rect.x0, j), rect.width(), tile.empty);
+                continue;
+            }
             for (int i = rect.x0; i < rect.x1; ++i)
                 copy(frame, frame.at(i - i % notice.stride, j - j % notice.stride), frame.at(i, j));
+        }
         const bool stands_for_others = notice.square > TileGrid::tile_side;
-        shows(notice.tile, stands_for_others ? notice.square : notice.stride);
+        shows(notice.tile, stands_for_others ? notice.square : notice.stride, !notice.same);
         if (stands_for_others) spread(notice, canvas);
         if (tracing && done[notice.tile] == 0) ++tiles_traced;
         int sum = 0;
@@ -176,14 +182,25 @@ struct Board {
                                                      : std::numeric_limits<float>::infinity();
     }
 
-    void shows(std::size_t tile, int pixels_a_side) {
+    void copy_row(const Frame& frame, std::size_t first, int count, bool misses) {
+        const auto columns = static_cast<std::size_t>(count);
+        std::copy_n(&frame.color[first], columns, &color[first]);
+        if (!tracing) return;  // the depth is what it was
+        std::fill_n(&depth[first], columns, std::numeric_limits<float>::infinity());
+        if (misses) return;
+        for (std::size_t p = first; p < first + columns; ++p)
+            if (possibly_hit(frame.status[p]))
+                depth[p] = static_cast<float>(midpoint(frame.t(p)));
+    }
+
+    void shows(std::size_t tile, int pixels_a_side, bool differs = true) {
         std::uint8_t& before = blocks[tile];
         if (before == nothing) --tiles_missing;
         if (before > fine_blocks && pixels_a_side <= fine_blocks) --tiles_coarse;
         before = static_cast<std::uint8_t>(pixels_a_side);
-        if (is_changed[tile] != 0) return;
-        is_changed[tile] = 1;
-        changed.push_back(tile);
+        if (!differs) return;
+        if (is_changed[tile] == 0) changed.push_back(tile);
+        is_changed[tile] |= tracing ? 3 : 1;
     }
 
     // The first pixel of the tile over the others of its square that have nothing finer.
@@ -214,7 +231,7 @@ struct Overtaken {
 };
 
 // Copies the tile; whether that changed a byte of its colours.
-bool copy_tile(const PixelRect& rect, const Board& board, ShownPicture& shown) {
+bool copy_tile(const PixelRect& rect, const Board& board, bool with_depth, ShownPicture& shown) {
     bool differs = false;
     const auto columns = static_cast<std::size_t>(rect.width());
     for (int j = rect.y0; j < rect.y1; ++j) {
@@ -225,7 +242,7 @@ bool copy_tile(const PixelRect& rect, const Board& board, ShownPicture& shown) {
             differs = true;
             std::copy_n(&board.color[row], columns, &shown.color[row]);
         }
-        std::copy_n(&board.depth[row], columns, &shown.depth[row]);
+        if (with_depth) std::copy_n(&board.depth[row], columns, &shown.depth[row]);
     }
     return differs;
 }
@@ -321,7 +338,8 @@ class RenderSession::Director {
         const Squares& tiles = TileGrid(shown.size.width, shown.size.height).tiles;
         for (const std::size_t tile : board_.changed) {
             const PixelRect rect = tiles.rect(tile);
-            if (copy_tile(rect, board_, shown)) change.tiles.push_back(rect);
+            const bool with_depth = (board_.is_changed[tile] & 2) != 0;
+            if (copy_tile(rect, board_, with_depth, shown)) change.tiles.push_back(rect);
             board_.is_changed[tile] = 0;
         }
         board_.changed.clear();
@@ -435,7 +453,12 @@ class RenderSession::Director {
             starved_ = !board_.complete();
             board_.ended = Clock::now();
         }
-        if (task != Task::shade) settle(selected);
+        if (task != Task::shade) {
+            settle(selected);
+        } else if (going_on) {
+            recolored_.clear();
+            is_shaded_ = true;
+        }
         if (going_on && std::find(kept.begin(), kept.end(), 1) != kept.end()) {
             settings_.wake();
             going_on = hand_rests(request);
@@ -462,6 +485,7 @@ class RenderSession::Director {
         job.task = task;
         job.order = order;
         job.keep_lists = true;
+        if (task == Task::shade) job.recolored = recolored_;
         job.selected = std::move(selected);
         if (request.focus) {
             job.focus_i = static_cast<int>(request.focus->x);
@@ -510,9 +534,13 @@ class RenderSession::Director {
         const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
         if (same_view && whole && same_geometry(*before.scene, *request.scene)) {
             Field field = *picture_.field;
-            for (std::size_t i = 0; i < field.size(); ++i)
-                field.color[i] = request.scene->elements[field.source[i]].color;
+            const std::vector<std::uint32_t> changed = recolor(field, *request.scene);
             picture_.field = std::make_shared<const Field>(std::move(field));
+            std::vector<std::uint32_t> all;
+            std::set_union(recolored_.begin(), recolored_.end(), changed.begin(), changed.end(),
+                           std::back_inserter(all));
+            recolored_ = std::move(all);
+            is_shaded_ = false;
             picture_.lighting = make_lighting(*request.scene, picture_.view);
             return Task::shade;
         }
@@ -528,17 +556,20 @@ class RenderSession::Director {
         picture_.options.tolerance = settings_.tolerance;
         if (!same_size) {
             canvas_.reset();  // the memory of one is enough
-            canvas_ = std::make_unique<Canvas>(request.size.width, request.size.height, false);
+            canvas_ = std::make_unique<Canvas>(request.size.width, request.size.height, false, true);
             tiles_.resize(canvas_->grid.tiles.size());
         }
         canvas_->forget_lists();
 
         std::optional<std::vector<std::uint8_t>> touched;
-        if (same_view && same_light) {
+        // where the shading of new colours was cut short, tiles show old ones
+        if (same_view && same_light && is_shaded_) {
             if (directions_.empty()) directions_ = tile_directions(picture_.view, request.size);
             touched =
                 touched_tiles(*before.scene, *request.scene, request.camera.position, directions_);
         }
+        recolored_.clear();
+        is_shaded_ = true;
         for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
             if (!touched || (*touched)[tile] != 0)
                 tiles_[tile] = Tile::outdated;
@@ -602,6 +633,10 @@ class RenderSession::Director {
     PictureRequest traced_;  // what picture_, canvas_ and tiles_ are of
     std::vector<Tile> tiles_;
     std::vector<TileDirection> directions_;  // of picture_.view; empty: not made yet
+    // Elements of picture_.field whose new colours have not come to all tiles yet, and whether
+    // those and lights and background have.
+    std::vector<std::uint32_t> recolored_;
+    bool is_shaded_ = true;
 
     std::jthread thread_;  // last: joined before what it uses is gone
 };

@@ -56,7 +56,6 @@ void add(Field& field, const Element& element, std::size_t source) {
     field.by.push_back(b.y);
     field.bz.push_back(b.z);
     field.radius.push_back(radius);
-    field.color.push_back(element.color);
     field.source.push_back(static_cast<std::uint32_t>(source));
     field.mx.push_back(m.x);
     field.my.push_back(m.y);
@@ -65,10 +64,6 @@ void add(Field& field, const Element& element, std::size_t source) {
     field.length.push_back(length);
     field.inverse_width.push_back(1 / element.width);
     field.inverse_square.push_back(1 / (element.width * element.width));
-    field.red.push_back(static_cast<float>(element.color.x));
-    field.green.push_back(static_cast<float>(element.color.y));
-    field.blue.push_back(static_cast<float>(element.color.z));
-    field.one_color = field.one_color && element.color == field.color.front();
 }
 
 }  // namespace
@@ -85,6 +80,7 @@ Field compile(const Scene& scene) {
         }
     }
     field.first[field_groups] = static_cast<std::uint32_t>(field.size());
+    recolor(field, scene);
     // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
     // support ends at 1.
     const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
@@ -103,6 +99,27 @@ Field compile(const Scene& scene) {
     field.reach_box = box_of_reach(field);
     field.box = shrunk_box(field, field.reach_box);
     return field;
+}
+
+std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
+    std::vector<std::uint32_t> changed;
+    const std::size_t size = field.size();
+    field.color.resize(size, Color{-1, -1, -1});  // of none
+    field.red.resize(size);
+    field.green.resize(size);
+    field.blue.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        const Color& color = scene.elements[field.source[i]].color;
+        if (field.color[i] == color) continue;
+        changed.push_back(static_cast<std::uint32_t>(i));
+        field.color[i] = color;
+        field.red[i] = static_cast<float>(color.x);
+        field.green[i] = static_cast<float>(color.y);
+        field.blue[i] = static_cast<float>(color.z);
+    }
+    field.one_color = std::all_of(field.color.begin(), field.color.end(),
+                                  [&](const Color& c) { return c == field.color.front(); });
+    return changed;
 }
 
 }  // namespace ivory

@@ -73,4 +73,8 @@ struct Field {
 // Does not throw (but for memory); the scene has been validated by its reader.
 [[nodiscard]] Field compile(const Scene& scene);
 
+// The colours of a scene that differs in nothing else from the one that `field` was compiled from.
+// Which elements have another than before: indices into `field`, ascending.
+std::vector<std::uint32_t> recolor(Field& field, const Scene& scene);
+
 }  // namespace ivory

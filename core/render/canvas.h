@@ -50,9 +50,11 @@ struct Canvas {
     Frame frame;
     std::vector<TileState> tiles;
 
-    // Throws std::bad_alloc.
-    Canvas(int width, int height, bool keep_surface)
-        : grid(width, height), frame(width, height, keep_surface), tiles(grid.tiles.size()) {}
+    // Throws std::bad_alloc. `keep_look`: shading again needs no surface but where colours change.
+    Canvas(int width, int height, bool keep_surface, bool keep_look = false)
+        : grid(width, height),
+          frame(width, height, keep_surface, keep_look),
+          tiles(grid.tiles.size()) {}
 
     // For a field or a view that has changed: lists of the old one prove nothing of the new one.
     // Colours, lights and background leave them valid.

@@ -54,9 +54,10 @@ std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
          squares *= 4) {
         stride /= 2;
     }
-    std::vector<int> strides;
-    for (; stride > 0; stride /= 2) strides.push_back(stride);
-    return strides;
+    // Each pass bounds the field on its windows anew: more passes between would cost more than they
+    // show.
+    if (stride > tile_side) return {stride, 8, 1};
+    return {stride, 1};
 }
 
 // Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
@@ -328,16 +329,19 @@ class FrameJob::Work {
                 for (const std::uint32_t element : tile.list.elements) tally.reached[element] = 1;
             }
         }
-        bool done = true;
+        bool done = true, same = false;
         if (settings_.task == Task::shade) {
-            done = shade_again(index, tally);
+            const std::size_t corner =
+                canvas_.frame.at(tiles().rect(index).x0, tiles().rect(index).y0);
+            same = tile.empty && canvas_.frame.color[corner] == picture_.lighting.background;
+            done = same || shade_again(index, tally);
         } else if (!tile.list.certainly_empty) {
             done = trace_tile(index, strides_[pass], first, tally);
         } else if (first) {
             leave_empty(index);
         }
         const bool has_new = first || !tile.list.certainly_empty;
-        if (done && has_new) notify(index, square);
+        if (done && has_new) notify(index, square, same);
         if (done && last && !settings_.keep_lists) {
             tile.has_list = false;
             tile.list = {};
@@ -345,9 +349,9 @@ class FrameJob::Work {
         return done;
     }
 
-    void notify(std::size_t tile, int square) const {
+    void notify(std::size_t tile, int square, bool same) const {
         if (settings_.on_tile) {
-            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride, square});
+            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride, square, same});
         }
     }
 
@@ -408,13 +412,14 @@ class FrameJob::Work {
 
     // The rays of the tile's pixels on `stride` but not on `coarser` (0: none is left out), in
     // groups of 4 x 4 pixels within groups of 8 x 8, since neighbours walk alike.
-    void gather(TracedTile& traced, std::size_t index, int stride, int coarser) const {
+    void gather(TracedTile& traced, std::size_t index, int stride, int coarser,
+                bool with_parts = true) const {
         const Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
         RayBundle& rays = traced.rays;
         rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
         const bool in_parts =
-            canvas_.tiles[index].list.elements.size() >= BundleField::parts_elements;
+            with_parts && canvas_.tiles[index].list.elements.size() >= BundleField::parts_elements;
         if (in_parts) {
             rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
             rays.parts[0].first_part = 1;
@@ -513,12 +518,30 @@ class FrameJob::Work {
         const BundleIsolations& isolations = traced.isolations;
         std::copy_n(&isolations.status[k], count, &frame.status[p]);
         if (colored) std::copy_n(&traced.colors[k], count, &frame.color[p]);
-        if (std::none_of(&isolations.status[k], &isolations.status[k] + count, possibly_hit))
-            return;
+        const auto hit = [](Status status) { return possibly_hit(status); };
+        if (std::none_of(&isolations.status[k], &isolations.status[k] + count, hit)) return;
         std::copy_n(&isolations.t_lo[k], count, &frame.t_lo[p]);
         std::copy_n(&isolations.t_hi[k], count, &frame.t_hi[p]);
+        if (!frame.look.empty()) {
+            for (std::size_t i = 0; i < count; ++i) {
+                if (possibly_hit(isolations.status[k + i]))
+                    frame.look[p + i] = traced.surfaces.look(k + i);
+            }
+        }
         if (frame.surface.empty()) return;
         std::copy_n(&traced.surfaces.points[k], count, &frame.surface[p]);
+    }
+
+    // Whether an element with another colour than before is in the list.
+    bool reached_by_recolored(const ElementList& list) const {
+        const std::vector<std::uint32_t>& recolored = settings_.recolored;
+        auto element = list.elements.begin();
+        for (const std::uint32_t other : recolored) {
+            element = std::lower_bound(element, list.elements.end(), other);
+            if (element == list.elements.end()) return false;
+            if (*element == other) return true;
+        }
+        return false;
     }
 
     // Colours, lights and background anew, from the t that stand in the frame.
@@ -526,25 +549,32 @@ class FrameJob::Work {
         Frame& frame = canvas_.frame;
         const TileState& tile = canvas_.tiles[index];
         const Clock::time_point start = Clock::now();
-        if (tile.stride != 0) {  // else nothing is traced
+        if (tile.empty) {
+            leave_empty(index);
+        } else if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
+            const bool looks_hold =
+                !frame.look.empty() && frame.surface.empty() &&
+                !(tile.has_list ? reached_by_recolored(tile.list) : !settings_.recolored.empty());
             TracedTile traced;
-            gather(traced, index, tile.stride, 0);
+            gather(traced, index, tile.stride, 0, !looks_hold);
             traced.surfaces.exact = !frame.surface.empty();
             traced.surfaces.clear(traced.size());
             std::array<double, pixels_in_tile> m;
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
-                m[k] = possibly_hit(frame.status[p]) ? midpoint(frame.t(p)) : infinity<double>;
+                const bool hit = possibly_hit(frame.status[p]);
+                if (looks_hold && hit) traced.surfaces.set_look(k, frame.look[p]);
+                m[k] = hit ? midpoint(frame.t(p)) : infinity<double>;
             }
-            find_surface(traced, tile.list, m);
+            if (!looks_hold) find_surface(traced, tile.list, m);
             paint(traced);
             for (std::size_t k = 0; k < traced.size(); ++k) {
                 const std::size_t p = traced.pixel[k];
                 frame.color[p] = traced.colors[k];
-                if (!frame.surface.empty() && possibly_hit(frame.status[p])) {
-                    frame.surface[p] = traced.surfaces.points[k];
-                }
+                if (!possibly_hit(frame.status[p])) continue;
+                if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
+                if (!frame.look.empty() && !looks_hold) frame.look[p] = traced.surfaces.look(k);
             }
         }
         tally.shading += Clock::now() - start;

@@ -22,8 +22,9 @@ enum class Task : std::uint8_t {
 
 enum class Order : std::uint8_t {
     plain,           // each tile once, all of its pixels
-    // One pixel for each 64 x 64, then 32 x 32 and so on to the last: none is traced twice. Where
-    // few tiles are selected it begins with smaller squares, 8 x 8 at the least.
+    // One pixel for each 64 x 64, then 8 x 8, then all: none is traced twice. Where few tiles are
+    // selected it begins with smaller squares, 8 x 8 at the least; what begins with 16 x 16 goes on
+    // to all at once.
     coarse_to_fine,
 };
 
@@ -36,6 +37,8 @@ struct TileNotice {
     // Coarse to fine, 64 or 32 while this is the only selected tile begun of the square of so many
     // pixels a side, counted from the picture's corner: until others come it stands for them all.
     int square;
+    // Nothing in the frame is another than before: a tile without a surface, shaded again.
+    bool same = false;
 };
 
 struct JobSettings {
@@ -43,6 +46,9 @@ struct JobSettings {
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
     bool keep_lists = false;  // in the canvas, for the next job
+    // Task::shade: indices into the field, ascending, of the elements whose colour is another than
+    // it was when the looks that the canvas keeps were found.
+    std::vector<std::uint32_t> recolored;
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;
     // Coarse to fine, the pixel around which each pass begins; -1, -1: the middle.

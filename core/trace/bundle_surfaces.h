@@ -12,6 +12,11 @@
 
 namespace ivory {
 
+// What a pixel is shaded from: normal and colour.
+struct Look {
+    float nx, ny, nz, r, g, b;
+};
+
 struct BundleSurfaces {
     static constexpr std::size_t room = RayBundle::capacity + 16;  // vectors are read whole
 
@@ -42,6 +47,15 @@ struct BundleSurfaces {
         r[k] = static_cast<float>(point.color.x);
         g[k] = static_cast<float>(point.color.y);
         b[k] = static_cast<float>(point.color.z);
+    }
+    [[nodiscard]] Look look(std::size_t k) const { return {nx[k], ny[k], nz[k], r[k], g[k], b[k]}; }
+    void set_look(std::size_t k, const Look& look) {
+        nx[k] = look.nx;
+        ny[k] = look.ny;
+        nz[k] = look.nz;
+        r[k] = look.r;
+        g[k] = look.g;
+        b[k] = look.b;
     }
     void forget(std::size_t k) { nx[k] = std::numeric_limits<float>::quiet_NaN(); }
     [[nodiscard]] bool seen(std::size_t k) const { return !std::isnan(nx[k]); }

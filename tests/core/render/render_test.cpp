@@ -269,7 +269,7 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
         if (inside[notice.tile]++ != 0) ++wrong;
         const int before = stride[notice.tile].exchange(notice.stride);
         // so few tiles begin with four pixels each
-        if (notice.stride != 1 && notice.stride != (before == 0 ? 8 : before / 2)) ++wrong;
+        if (notice.stride != 1 && before != 0) ++wrong;
         if (notice.square != 16) ++wrong;
         if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
         for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
@@ -285,8 +285,8 @@ TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
     for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
 }
 
-// One tile for each 64 x 64 pixels, then one for each 32 x 32 that has none, then the others: of
-// those that are selected, and the fewer these are the smaller the first squares.
+// One tile for each 64 x 64 pixels, then the others: of those that are selected, and the fewer
+// these are the smaller the first squares.
 TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
     constexpr int width = 900, height = 760;  // 57 x 48 tiles
     for (const auto& [share, first_square] : {std::pair(1, 64), {2, 32}, {7, 16}}) {
@@ -314,21 +314,32 @@ TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
         started = true;
         job.finish();
 
-        std::set<std::pair<int, std::size_t>> taken;  // a size, and a square of it
+        std::set<std::size_t> taken;  // squares
         for (std::size_t k = 0; k < begun.size(); ++k) {
             const PixelRect rect = canvas.grid.tiles.rect(begun[k]);
-            for (int side = 32; side <= first_square; side *= 2) {
-                const std::size_t square = Squares(width, height, side).at(rect.x0, rect.y0);
-                const bool is_first = taken.insert({side, square}).second;
-                // an empty block is done at once
-                const bool leaves_open = squares[k] < side && canvas.tiles[begun[k]].empty;
-                EXPECT_TRUE(leaves_open || is_first == (squares[k] >= side)) << begun[k];
-            }
+            if (first_square == 16) continue;
+            const std::size_t square = Squares(width, height, first_square).at(rect.x0, rect.y0);
+            const bool is_first = taken.insert(square).second;
+            // an empty block is done at once
+            const bool leaves_open = squares[k] < first_square && canvas.tiles[begun[k]].empty;
+            EXPECT_TRUE(leaves_open || is_first == (squares[k] >= first_square)) << begun[k];
         }
         for (int side = 16; side <= 64; side *= 2)
-            EXPECT_EQ(std::count(squares.begin(), squares.end(), side) > 0, side <= first_square);
-        EXPECT_EQ(begun.size(), static_cast<std::size_t>(std::count(settings.selected.begin(),
-                                                                    settings.selected.end(), 1)));
+            EXPECT_EQ(std::count(squares.begin(), squares.end(), side) > 0,
+                      side == first_square || side == 16);
+        // all of the first pass before anything of the next
+        std::set<std::size_t> squares_to_begin;
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
+            const PixelRect rect = canvas.grid.tiles.rect(t);
+            if (settings.selected[t] != 0)
+                squares_to_begin.insert(Squares(width, height, first_square).at(rect.x0, rect.y0));
+        }
+        std::set<std::size_t> squares_begun;
+        for (const std::size_t t : begun) {
+            const PixelRect rect = canvas.grid.tiles.rect(t);
+            squares_begun.insert(Squares(width, height, first_square).at(rect.x0, rect.y0));
+        }
+        EXPECT_EQ(squares_begun, squares_to_begin);
     }
 }
 
