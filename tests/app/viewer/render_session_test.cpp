@@ -16,6 +16,7 @@
 #include "app/viewer/script_player.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "tests/tools/seed.h"
 
 namespace ivory {
 namespace {
@@ -275,6 +276,41 @@ TEST_F(Session, AColourTracesNothing) {
     show(scene);
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+}
+
+// Colours, lights and shapes that change faster than they can be shown: what was cut short is made
+// up for, whatever comes next.
+TEST_F(Session, EditsThatOvertakeEachOtherEndAsRender) {
+    constexpr WindowSize large{900, 600};
+    std::mt19937 random(tools::announced_seed(41));
+    for (int round = 0; round < 6; ++round) {
+        Scene scene = two_blobs();
+        scene.elements.push_back(point({0, 1, 0.3}, KernelKind::blinn, 0.4, {0.2, 0.8, 0.2}));
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        ASSERT_TRUE(wait_final());
+        for (int edit = 0; edit < 6; ++edit) {
+            const auto share = [&] { return static_cast<double>(random() % 100) / 100; };
+            Element& element = scene.elements[random() % scene.elements.size()];
+            switch (random() % 4) {
+                case 0:
+                    element.color = {share(), share(), share()};
+                    break;
+                case 1:
+                    scene.background = {share(), share(), share()};
+                    break;
+                case 2:
+                    scene.lights = {Light{{1, 2, 3}, {1, share(), 1}, 0.9, false}};
+                    break;
+                default:
+                    std::get<PointSkeleton>(element.skeleton).position.y += 0.1 * share();
+            }
+            show(std::make_shared<const Scene>(scene), camera(), large);
+            std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
+            session.poll(FirstPicture::any);
+        }
+        ASSERT_TRUE(wait_final());
+        ASSERT_EQ(session.shown().color, rendered(scene, camera(), large)) << "round " << round;
+    }
 }
 
 TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {

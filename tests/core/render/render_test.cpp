@@ -477,16 +477,27 @@ TEST(Render, ShadingAgainEqualsAFullRender) {
     render(picture_of(recolored), expected, {});
 
     for (const bool keep_lists : {false, true}) {
-        Canvas canvas(frame_width, frame_height, true);
-        JobSettings settings;
-        settings.keep_lists = keep_lists;
-        settings.threads = 2;
-        render(picture_of(mixed_scene()), canvas, settings);
-        settings.task = Task::shade;
-        const JobReport report = render(picture_of(recolored), canvas, settings);
-        EXPECT_TRUE(report.complete);
-        EXPECT_EQ(report.counts.evaluations, 0u);
-        EXPECT_TRUE(bits_of(canvas.frame) == bits_of(expected.frame));
+        for (const bool keep_look : {false, true}) {
+            Canvas canvas(frame_width, frame_height, !keep_look, keep_look);
+            JobSettings settings;
+            settings.keep_lists = keep_lists;
+            settings.threads = 2;
+            const Picture before = picture_of(mixed_scene());
+            render(before, canvas, settings);
+            settings.task = Task::shade;
+            Field field = *before.field;
+            settings.recolored = recolor(field, recolored);
+            EXPECT_EQ(settings.recolored.size(), 1u);
+            const JobReport report = render(picture_of(recolored), canvas, settings);
+            EXPECT_TRUE(report.complete);
+            EXPECT_EQ(report.counts.evaluations, 0u);
+            if (!keep_look) {
+                EXPECT_TRUE(bits_of(canvas.frame) == bits_of(expected.frame));
+            }
+            for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+                ASSERT_EQ(canvas.frame.color[p], expected.frame.color[p]) << p;
+            }
+        }
     }
 }
 
