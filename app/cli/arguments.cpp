@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
 #include "core/scene/text.h"
 
@@ -119,6 +120,13 @@ bool Skipping::*read_skipping(std::string_view text) {
     throw wrong_value("--without", text, "a kind of skipping; take " + listed(names, "or"));
 }
 
+void limit_instructions(const std::string& name) {
+    if (limit_instruction_set(name)) return;
+    throw wrong_value(
+        "--instructions", name,
+        "an instruction set that this machine has; take " + listed(instruction_sets(), "or"));
+}
+
 void add_render_options(CLI::App& call, RenderArguments& render) {
     call.add_option("SCENE", render.scene, "scene file, - for standard input")
         ->required()
@@ -147,6 +155,10 @@ void add_render_options(CLI::App& call, RenderArguments& render) {
             "(float before double) or packets; several with commas")
         ->delimiter(',')
         ->type_name("KIND");
+    add_value(call, "--instructions", "NAME",
+              "none better than these, to compare: " + listed(instruction_sets(), "or") +
+                  "; default: the best that this machine has",
+              limit_instructions);
     add_work_options(call, render.work, "1e-6");
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
-#include "core/trace/packet.h"
 
 namespace ivory {
 namespace {
@@ -39,7 +39,7 @@ std::string statistics_json(const RenderStatistics& s) {
     json["width"] = s.width;
     json["height"] = s.height;
     json["threads"] = s.threads;
-    json["target"] = packet_target();
+    json["target"] = instruction_set();
     json["method"] = s.method;
     json["tolerance"] = s.options.tolerance;
     json["camera"] = {{"position", array_of(s.camera.position)},

@@ -182,9 +182,4 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         });
 }
 
-std::string_view packet_target() {
-    const std::string_view target = packet_steps().target;
-    return target.starts_with("AVX3") ? "AVX-512" : target;  // Highway's name for it
-}
-
 }  // namespace ivory

@@ -11,7 +11,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "core/field/bundle.h"
@@ -59,8 +58,5 @@ class PacketTracer {
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;
 };
-
-// The instruction set that the packets run on.
-[[nodiscard]] std::string_view packet_target();
 
 }  // namespace ivory

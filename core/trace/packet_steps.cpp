@@ -705,8 +705,7 @@ void look(const Window& window, const Field& field, double unit, const Lanes& la
 }  // namespace
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{
-        prepare, walk, walk_again, enclose, look, surface, hwy::TargetName(HWY_TARGET)};
+    static const PacketSteps steps{prepare, walk, walk_again, enclose, look, surface};
     return steps;
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "core/field/bundle.h"
 #include "core/field/field.h"
@@ -72,8 +71,6 @@ struct PacketSteps {
     // or not defined, or no F_i is above 0, the normal's x is NaN.
     void (*surface)(const Window& window, const Field& field, const Lanes& lanes,
                     std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface);
-
-    std::string_view target;  // the instruction set
 };
 
 // For this machine.

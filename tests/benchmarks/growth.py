@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How the time grows: with the elements at the same covered area, the pixels, the threads.
+"""How the time grows: with the elements at the same covered area, the pixels, the threads, and
+how it falls with better instruction sets.
 
 Rows by threads have `side_by_side`, the time of as many independent runs of one thread at once: n
 threads can at best take an n-th of it, and `efficiency` is the share of that which they reach."""
@@ -21,11 +22,11 @@ def sizes(megapixels):
     return f"{width}x{round(width * 9 / 16)}"
 
 
-def measured(kind, value, name, path, size, arguments, threads=None):
+def measured(kind, value, name, path, size, arguments, threads=None, options=()):
     threads = threads or arguments.threads
     statistics = host.render(path, "--size", size, "--tolerance", arguments.tolerance,
                              "--threads", threads, "--repeat", arguments.repeats,
-                             "--method", arguments.method, "-o", os.devnull)
+                             "--method", arguments.method, "-o", os.devnull, *options)
     seconds = statistics["seconds"]
     pixels = statistics["width"] * statistics["height"]
     row = {
@@ -89,6 +90,9 @@ def main():
         row["efficiency"] = row["side_by_side"] / (threads * row["seconds"])
         host.say(f"threads {threads}: {row['efficiency']:.3f} of what independent runs reach")
         rows.append(row)
+    for name in host.instruction_sets(path):
+        rows.append(measured("instructions", name, arguments.scene, path, arguments.size,
+                             arguments, options=("--instructions", name)))
     facts = host.facts()
     keys = list(dict.fromkeys(key for row in rows for key in row))
     host.write_csv(arguments.output / "growth.csv",

@@ -63,6 +63,14 @@ def facts():
                               now.isoformat()]))
 
 
+def instruction_sets(scene):
+    """Those that the machine has, best first."""
+    known = ["AVX-512", "AVX2", "SSE4", "SSE2", "NEON", "SCALAR"]
+    return [name for name in known if subprocess.run(
+        [str(IVORY), "render", str(scene), "--size", "16x16", "--instructions", name, "--stats",
+         os.devnull, "--quiet"], capture_output=True, check=False).returncode == 0]
+
+
 def write_csv(path, rows):
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", newline="") as file:

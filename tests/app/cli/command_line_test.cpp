@@ -12,9 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
+#include "core/math/instruction_sets.h"
 #include "tests/app/cli/run_ivory.h"
 #include "tests/ordinary_user.h"
 
@@ -161,6 +163,65 @@ TEST(CommandLine, AnyNumberOfThreadsGivesTheSameBytes) {
         if (first_png.empty()) first_png = png, first_csv = csv;
         EXPECT_TRUE(png == first_png && csv == first_csv) << threads;
     }
+}
+
+// RGB, row by row.
+std::vector<std::uint8_t> pixels_of(const fs::path& path) {
+    png_image image;
+    std::memset(&image, 0, sizeof image);
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
+    image.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+    EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+    return pixels;
+}
+
+// On another instruction set a hit is never a miss, enclosures overlap, and pixels of equal status
+// differ by 1/255 at most.
+TEST(CommandLine, InstructionSetsAgree) {
+    const TemporaryFolder folder;
+    const std::string mixed = IVORY_SOURCE_DIR "/assets/scenes/molecule.ivory.json";
+    std::vector<std::string> expected_answers;
+    std::vector<std::uint8_t> expected_pixels;
+    for (const std::string_view name : instruction_sets()) {
+        SCOPED_TRACE(std::string(name));
+        const Finished run =
+            run_ivory({"render", mixed, "-o", (folder / "a.png").string(), "--answers",
+                       (folder / "a.csv").string(), "--size", "160x120", "--instructions",
+                       std::string(name), "--stats", "-", "--quiet"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.out.find("\"target\": \"" + std::string(name) + "\""), std::string::npos);
+        const std::vector<std::string> answers = lines_of(bytes_of(folder / "a.csv"));
+        const std::vector<std::uint8_t> pixels = pixels_of(folder / "a.png");
+        if (expected_answers.empty()) {
+            expected_answers = answers;
+            expected_pixels = pixels;
+        }
+        ASSERT_EQ(answers.size(), expected_answers.size());
+        ASSERT_EQ(pixels.size(), expected_pixels.size());
+        for (std::size_t n = 1; n < answers.size(); ++n) {
+            const auto column = [](const std::string& line, int index) {
+                std::size_t begin = 0;
+                for (; index > 0; --index) begin = line.find(',', begin) + 1;
+                return line.substr(begin, line.find(',', begin) - begin);
+            };
+            const std::string status = column(answers[n], 6);
+            ASSERT_EQ(status, column(expected_answers[n], 6)) << n;
+            if (status == "hit") {
+                const auto t = [&](const std::string& line, int index) {
+                    return std::strtod(column(line, index).c_str(), nullptr);
+                };
+                ASSERT_LE(t(answers[n], 7), t(expected_answers[n], 8));
+                ASSERT_GE(t(answers[n], 8), t(expected_answers[n], 7));
+            }
+            for (std::size_t k = 3 * (n - 1); k < 3 * n; ++k) {
+                ASSERT_LE(std::abs(pixels[k] - expected_pixels[k]), 1) << n;
+            }
+        }
+    }
+    expect_failure(run_ivory({"render", mixed, "--stats", "-", "--instructions", "Z80"}), 2,
+                   "not an instruction set that this machine has");
 }
 
 TEST(CommandLine, ADashIsStandardInputAndOutput) {

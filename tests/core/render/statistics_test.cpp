@@ -1,11 +1,12 @@
 // The keys of `--stats`.
 #include "core/render/statistics.h"
-#include "core/trace/packet.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
+
+#include "core/math/instruction_sets.h"
 
 namespace ivory {
 namespace {
@@ -35,7 +36,7 @@ TEST(Statistics, HaveAllKeys) {
     EXPECT_EQ(json.at("width"), 30);
     EXPECT_EQ(json.at("height"), 20);
     EXPECT_EQ(json.at("threads"), 3);
-    EXPECT_EQ(json.at("target"), packet_target());
+    EXPECT_EQ(json.at("target"), instruction_set());
     EXPECT_NE(json.at("target"), "");
     EXPECT_EQ(json.at("method"), "proved");
     EXPECT_EQ(json.at("camera"), Json::parse(R"({"position": [0, 0, 8], "target": [0, 0.5, 0],

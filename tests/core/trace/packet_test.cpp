@@ -130,7 +130,7 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     EXPECT_LE(wider, c.tolerance < 1e-11 || c.recipe.critical ? hits / 20 : hits / 500);
     EXPECT_GE(decided, c.least_decided * rays_traced);
     std::printf("%d rays, %d decided by packets, %d hits, %d judged by the reference; %s\n",
-                rays_traced, decided, hits, judged, std::string(packet_target()).c_str());
+                rays_traced, decided, hits, judged, std::string(instruction_set()).c_str());
 }
 
 INSTANTIATE_TEST_SUITE_P(
