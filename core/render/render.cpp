@@ -24,8 +24,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int tile_side = TileGrid::tile_side;
 constexpr std::size_t pixels_in_tile = tile_side * tile_side;
 
-// What a worker adds up for itself, and the report gets at its end.
-struct Tally {
+// What a worker adds up for itself, and the report gets at its end; in cache lines of its own.
+struct alignas(128) Tally {
     Counts counts;
     Clock::duration tracing{}, shading{};
     std::size_t tiles = 0;

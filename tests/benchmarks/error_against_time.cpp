@@ -8,7 +8,6 @@
 // The reference is `proved` at 1e-12, half of which is the least error of t that can be told; its
 // answers on a seeded sample of the pixels are checked here by the tests' own reference of 256 bits.
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +15,6 @@
 #include <memory>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -237,43 +235,20 @@ void sweep_differences(const Picture& picture, const Canvas& canvas, const Optio
     }
 }
 
-// "Field, gradient, colour, light once at every pixel": the least that any method could do. Where
-// the ray misses, in the middle of the scene; with the tile's list, or all elements where it has
-// none.
-void look_once(const Picture& picture, Canvas& canvas, const Options& options) {
-    const Frame& frame = canvas.frame;
-    const ElementList all = all_elements(*picture.field);
-    const Vec3d middle = picture.view.camera.target - picture.view.camera.position;
-    const double middle_t = std::sqrt(dot(middle, middle));
+// "Field, gradient, colour, light once" at every pixel that is hit, in the same SIMD as the picture:
+// what is left of the work when every t is known.
+void look_once(const Picture& picture, const Options& options) {
+    Canvas canvas(options.width, options.height, false);
+    paint(picture, canvas, options, true);
     Run run;
-    std::vector<Rgba8> colors(frame.size());
     for (int repeat = 0; repeat < options.repeats; ++repeat) {
         const Clock::time_point start = Clock::now();
         const double processor = processor_seconds();
-        std::atomic<std::size_t> next{0};
-        const auto work = [&] {
-            for (std::size_t k; (k = next.fetch_add(1)) < canvas.tiles.size();) {
-                const TileState& tile = canvas.tiles[k];
-                const bool listed = tile.has_list && !tile.list.elements.empty();
-                const PixelRect rect = canvas.grid.tiles.rect(k);
-                for (int j = rect.y0; j < rect.y1; ++j) {
-                    for (int i = rect.x0; i < rect.x1; ++i) {
-                        const std::size_t p = frame.at(i, j);
-                        const Ray ray =
-                            primary_ray(picture.view, frame.width, frame.height, i, j);
-                        const double t =
-                            frame.status[p] == Status::hit ? midpoint(frame.t(p)) : middle_t;
-                        const SurfacePoint point = picture.method->surface(
-                            *picture.field, listed ? tile.list : all, ray, t, picture.options);
-                        colors[p] = shade(picture.lighting, ray.direction, point);
-                    }
-                }
-            }
-        };
-        std::vector<std::jthread> threads;
-        for (int n = 1; n < options.threads; ++n) threads.emplace_back(work);
-        work();
-        threads.clear();
+        JobSettings settings;
+        settings.threads = options.threads;
+        settings.task = Task::shade;
+        settings.keep_lists = true;
+        render(picture, canvas, settings);
         run.seconds.push_back(seconds_since(start));
         run.processor.push_back(processor_seconds() - processor);
     }
@@ -298,7 +273,7 @@ void measure(const Options& options) {
     check_reference(scene, truth, reference.frame, options);
 
     print_header();
-    look_once(truth, reference, options);
+    look_once(truth, options);
     for (int repeat = 0; repeat < options.repeats; ++repeat) {
         for (Run& run : runs) {
             if (!run.stopped) time_once(scene, options, run);

@@ -82,14 +82,15 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
 }
 
 // Against those elements alone that reach the ray, where there are many; if what the others could
-// add hides a sign, against all.
+// add hides a sign, which it often would on the finest grids, against all.
 Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
                        const Ray& ray, const MethodOptions& options, Counts& counts) {
-    constexpr std::size_t many = 48;
+    constexpr std::size_t many = 200;
+    constexpr double fine = 1e-11;
     const Vec3d& d = ray.direction;
     const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-    if (options.skipping.lists && list.elements.size() > many && largest > 1e-100 &&
-        largest < 1e100) {
+    if (options.skipping.lists && list.elements.size() > many && options.tolerance > fine &&
+        largest > 1e-100 && largest < 1e100) {
         const ElementList near = reaching_elements(field, list, {ray.origin, d, 0});
         counts.skipping.list_elements += list.elements.size();
         counts.skipping.list_left_out += list.elements.size() - near.elements.size();
