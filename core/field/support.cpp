@@ -23,7 +23,8 @@ double spread_of(const Cone& cone) { return cone.sine <= 0.45 ? 1.04 * cone.sine
 
 // What the rays are parametrized by does not matter to distances; beyond its far end an element
 // only gets farther away.
-ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone) {
+ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone,
+                              const Interval<double>& part) {
     const Vec3d& o = cone.apex;
     const bool bounded = field.compact && spread_of(cone) <= 0.5 &&
                          std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
@@ -36,7 +37,8 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
         far += std::max(std::abs(field.skeletons.lo[k] - o[k]),
                         std::abs(field.skeletons.hi[k] - o[k]));
     }
-    const Stretch rays{o, unit(cone.axis), spread_of(cone), 0, far * (1 + 0x1p-46)};
+    const Stretch rays{o, unit(cone.axis), spread_of(cone), part.lo,
+                       std::max(part.lo, std::min(part.hi, far * (1 + 0x1p-46)))};
     // Each element is dropped once, whatever the number of lists between: all together stay below
     // 2^-52 T.
     const double share = field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));

@@ -35,8 +35,11 @@ struct Cone {
 
 // The elements of `parent` that matter on the cone's rays; the others move into `rest`.
 // `parent` has to be valid on these rays. The result depends on the arguments alone; it is `parent`
-// itself where the cone is too wide for bounds, or the field not compact.
-[[nodiscard]] ElementList reaching_elements(const Field& field, const ElementList& parent,
-                                            const Cone& cone);
+// itself where the cone is too wide for bounds, or the field not compact. Of rays with directions of
+// length 1 within 2^-50 also on the part with t in `part` alone; then `certainly_empty` is about
+// that part.
+[[nodiscard]] ElementList reaching_elements(
+    const Field& field, const ElementList& parent, const Cone& cone,
+    const Interval<double>& part = {0.0, infinity<double>});
 
 }  // namespace ivory

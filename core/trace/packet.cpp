@@ -58,7 +58,8 @@ void PacketTracer::surface_in(const Window& window, const BundlePart& part, cons
     }
     if (index_.empty()) return;
     points_.resize(index_.size());
-    packet_steps().surface(bundle_field_.refined(), field, lanes_, index_, t_.data(), points_.data());
+    packet_steps().surface(bundle_field_.refined(), field, lanes_, index_, t_.data(),
+                           points_.data());
     for (std::size_t i = 0; i < index_.size(); ++i) {
         const std::size_t k = index_[i];
         if (!surfaces.seen(k)) surfaces.set_seen(k, points_[i]);
@@ -98,6 +99,7 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                     if (lanes_.state[k] != Lanes::walking) continue;
                     lanes_.state[k] = Lanes::undecided;
                     lanes_.t_lo[k] = window.begin;
+                    lanes_.t_hi[k] = infinity<double>;
                 }
                 return any(all, Lanes::walking);
             }
@@ -117,14 +119,15 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             const auto enclose = [&](Lanes::State otherwise) {
                 const std::uint64_t evaluations =
                     steps.enclose(window, T, settings.greatest_cell, 0, part.first, part.end,
-                                  Lanes::hidden, lanes_);
+                                  Lanes::hidden, Lanes::hidden, lanes_);
                 if (!any(part, Lanes::hidden)) return evaluations;
                 const Window& refined = bundle_field_.refined();
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
                 const double left_out = window.fine_bounds.above + window.fine_bounds.below;
                 return evaluations + steps.enclose(refined, T, settings.greatest_cell, left_out,
-                                                   part.first, part.end, otherwise, lanes_);
+                                                   part.first, part.end, Lanes::undecided,
+                                                   otherwise, lanes_);
             };
             std::uint64_t fine = enclose(Lanes::doubtful);
             if (any(part, Lanes::doubtful)) {
@@ -153,7 +156,7 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
                                : state == Lanes::hit   ? Status::hit
                                                        : Status::unresolved;
         isolations.t_lo[k] = lanes_.t_lo[k];
-        isolations.t_hi[k] = state == Lanes::hit ? lanes_.t_hi[k] : infinity<double>;
+        isolations.t_hi[k] = state == Lanes::walking ? infinity<double> : lanes_.t_hi[k];
     }
 }
 

@@ -34,8 +34,9 @@ class PacketTracer {
     };
 
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
-    // on [0, t.lo). `list` has to be valid on the bundle. Unless `surfaces` is null it gets what
-    // `surface` would give for the hits' midpoints.
+    // on [0, t.lo), and where t.hi is finite the first root lies before it. `list` has to be valid
+    // on the bundle. Unless `surfaces` is null it gets what `surface` would give for the hits'
+    // midpoints.
     void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                  const Settings& settings, BundleIsolations& isolations, BundleSurfaces* surfaces,
                  Counts& counts);

@@ -347,6 +347,7 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
                                      : is_candidate                 ? Lanes::candidate
                                                                     : Lanes::walking;
             lanes.t_lo[first + k] = window.begin;
+            lanes.t_hi[first + k] = infinity<double>;
             if (is_candidate)
                 lanes.guess[first + k] = window.middle + static_cast<double>(at[k]) * unit;
         }
@@ -366,6 +367,7 @@ std::uint64_t walk_again(const Window& window, double threshold, std::size_t fir
             if (lanes.state[k] != Lanes::doubtful) continue;
             lanes.state[k] = Lanes::undecided;
             lanes.t_lo[k] = window.begin;
+            lanes.t_hi[k] = infinity<double>;
         }
         return 0;
     }
@@ -406,7 +408,8 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
 std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
-                            double left_out, Lanes::State otherwise, Batch& batch, Lanes& lanes) {
+                            double left_out, Lanes::State pinned, Lanes::State otherwise,
+                            Batch& batch, Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
@@ -438,7 +441,8 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
 
         V<D> m = hn::Load(d, batch.t + first);
         V<D> lo = zero, hi = zero;
-        V<D> outside = c(window.begin);  // f < 0 up to there
+        V<D> outside = c(window.begin);     // f < 0 up to there
+        V<D> inside = c(infinity<double>);  // and a root before this
         M<D> open = hn::FirstN(d, batch.count - first);
         M<D> done = hn::FirstN(d, 0);
         for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
@@ -467,6 +471,7 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
             const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
             outside = hn::IfThenElse(hn::And(open, firm), from, outside);
+            inside = hn::IfThenElse(hn::And(open, firm), to, inside);
             const V<D> line = hn::Mul(hn::Floor(hn::Div(from, cell)), cell);
             const V<D> next = hn::Add(line, cell);
             const M<D> decided = hn::And(hn::And(open, firm),
@@ -482,13 +487,15 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
         }
         alignas(64) double lo_out[widest], hi_out[widest];
         hn::Store(hn::IfThenElse(done, lo, outside), d, lo_out);
-        hn::Store(hi, d, hi_out);
+        hn::Store(hn::IfThenElse(done, hi, inside), d, hi_out);
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, done, bits);
         for (std::size_t k = 0; k < N && first + k < batch.count; ++k) {
             const std::uint32_t lane = batch.lane[first + k];
             const bool is_hit = (bits[k / 8] >> (k % 8) & 1) != 0;
-            lanes.state[lane] = is_hit ? Lanes::hit : otherwise;
+            lanes.state[lane] = is_hit                         ? Lanes::hit
+                                : hi_out[k] < infinity<double> ? pinned
+                                                               : otherwise;
             lanes.t_lo[lane] = lo_out[k];
             lanes.t_hi[lane] = hi_out[k];
         }
@@ -498,7 +505,8 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
 }
 
 std::uint64_t enclose(const Window& window, double threshold, double half_width, double left_out,
-                      std::size_t first, std::size_t end, Lanes::State otherwise, Lanes& lanes) {
+                      std::size_t first, std::size_t end, Lanes::State pinned,
+                      Lanes::State otherwise, Lanes& lanes) {
     Batch batch;
     std::uint64_t steps = 0;
     for (std::size_t k = first; k < end; ++k) {
@@ -506,6 +514,7 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
         if (!window.fine_usable) {
             lanes.state[k] = otherwise;
             lanes.t_lo[k] = window.begin;
+            lanes.t_hi[k] = infinity<double>;
             continue;
         }
         const std::size_t at = batch.count++;
@@ -515,12 +524,13 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
         batch.dz[at] = lanes.dz[k];
         batch.t[at] = lanes.guess[k];
         if (batch.count == widest) {
-            steps +=
-                enclose_batch(window, threshold, half_width, left_out, otherwise, batch, lanes);
+            steps += enclose_batch(window, threshold, half_width, left_out, pinned, otherwise,
+                                   batch, lanes);
         }
     }
     if (batch.count > 0)
-        steps += enclose_batch(window, threshold, half_width, left_out, otherwise, batch, lanes);
+        steps +=
+            enclose_batch(window, threshold, half_width, left_out, pinned, otherwise, batch, lanes);
     return steps;
 }
 

@@ -27,7 +27,8 @@ struct Lanes {
         hit,        // done: t_lo, t_hi
         hidden,     // what the fine list leaves out hides on which side of a grid line the root is
         doubtful,   // float cannot decide on what happens in this window
-        undecided,  // to be traced by other means from t_lo on: f < 0 up to there
+        undecided,  // to be traced by other means from t_lo on: f < 0 up to there; the first root
+                    // lies before t_hi, where that is finite
         unused,
     };
 
@@ -56,11 +57,12 @@ struct PacketSteps {
 
     // Encloses the candidates' roots, of lanes first .. end, in double, on the grid whose cell is
     // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
-    // become hits, or `otherwise`. For a refined window `left_out` is what the elements that it has
-    // more than the window of the walk add to f or take away, at most.
+    // become hits; or `pinned` where the root lies in t_lo .. t_hi but a grid line does too; or
+    // `otherwise`. For a refined window `left_out` is what the elements that it has more than the
+    // window of the walk add to f or take away, at most.
     std::uint64_t (*enclose)(const Window& window, double threshold, double half_width,
                              double left_out, std::size_t first, std::size_t end,
-                             Lanes::State otherwise, Lanes& lanes);
+                             Lanes::State pinned, Lanes::State otherwise, Lanes& lanes);
 
     // Normal and colour at m[k] of those lanes k of first .. end for which that lies in the window,
     // in float: within 2^-8, or nx = NaN where float might lose more.

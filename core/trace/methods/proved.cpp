@@ -31,6 +31,15 @@ double greatest_cell(const Field& field, double tolerance) {
     return 0.5 * std::min(tolerance, 0x1p-20) * field.least_width;
 }
 
+// A length in units of the scaled t, rounded down.
+double in_t(const Search& search, double length) {
+    return length / search.speed * (1 - 8 * unit_roundoff);
+}
+
+Precision precision_of(const Search& search, const Field& field, const MethodOptions& options) {
+    return {power_of_two_below(in_t(search, greatest_cell(field, options.tolerance)))};
+}
+
 struct Found {
     Isolation isolation;
     bool one_cell = true;  // a hit is no wider: no sign was hidden
@@ -56,10 +65,7 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
     if (along.certainly_outside()) return {search.answer};
 
     // 3. The first root.
-    const auto in_t = [&](double length) {
-        return length / search.speed * (1 - 8 * unit_roundoff);
-    };
-    const Precision precision{power_of_two_below(in_t(greatest_cell(field, options.tolerance)))};
+    const Precision precision = precision_of(search, field, options);
     Isolation isolation =
         isolate_first_root(along, span, span.lo > 0 ? Start::outside : Start::unknown, precision,
                            evaluation_budget, counts);
@@ -71,7 +77,7 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
     if (isolation.status == Status::hit && width > 2 * cell) {
         const FieldSample middle =
             sample(field, list, scaled_ray.origin, scaled_ray.direction, midpoint(isolation.t));
-        if (!(width <= in_t(options.tolerance * field.width[middle.strongest])))
+        if (!(width <= in_t(search, options.tolerance * field.width[middle.strongest])))
             isolation.status = Status::unresolved;
     }
     isolation.t = scaled_ray.unscaled(isolation.t);
@@ -81,32 +87,74 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
     return {isolation, width <= cell};
 }
 
+// Where the first root is known to lie in `bracket`, hardly wider than a cell, all that is left to
+// find is between which grid lines: signs that the packet's bounds were too wide for. Let g be the
+// sum of the elements that take part. If g rises from bracket.lo to a line and f < 0 is certain
+// there, f is so on all of the way (isolate.h: f <= g + what is left out); if f > 0 is certain at
+// the line, the root is before it. |direction| is 1 within 2^-50. unresolved: not found.
+Isolation settled(const Interval<double>& bracket, const Field& field, const ElementList& list,
+                  const Ray& ray, const MethodOptions& options, Counts& counts) {
+    constexpr double most_lines = 32;
+    const Isolation unsettled{Status::unresolved, {bracket.lo, infinity<double>}};
+    const Search search = begin_search(field, list, ray, options);
+    if (search.over()) return unsettled;
+    const double lo = std::ldexp(bracket.lo, -search.ray.shift);
+    const double hi = std::ldexp(bracket.hi, -search.ray.shift);
+    const double cell = precision_of(search, field, options).cell_at(hi);
+    const double first = std::ceil(lo / cell) * cell;  // exact: fewer than 2^50 cells
+    if (!(hi - first < most_lines * cell)) return unsettled;
+
+    const Interval<double> span{std::max(first - cell, 0.0), hi + cell};
+    const ElementList near =
+        reaching_elements(field, list, {ray.origin, ray.direction, 0}, search.ray.unscaled(span));
+    thread_local FieldAlongRay along;
+    along.build(field, near, search.ray.origin, search.ray.direction, span);
+    double before = lo < first ? first - cell : first;  // f < 0 up to there
+    double after = before + cell;                       // the line in question
+    for (; after < hi; after += cell) {
+        const Enclosure e = along.over(lo, after);
+        ++counts.evaluations;
+        counts.element_evaluations += along.size();
+        if (e.right.lo > 0) break;
+        if (e.right.hi < 0 && e.slope.lo > 0) before = after;
+    }
+    // Two cells, where one line's sign stays hidden, are always narrow enough.
+    if (!(after - before <= 2 * cell)) return unsettled;
+    return {Status::hit, search.ray.unscaled({before, after})};
+}
+
 // Against those elements alone that reach the ray, where there are many; if what the others could
 // add hides a sign, which it often would on the finest grids, against all.
-Isolation isolate_from(double outside_until, const Field& field, const ElementList& list,
+// `known`: of the first root, that f < 0 on [0, known.lo) and, if known.hi is finite, that the root
+// lies in it.
+Isolation isolate_from(const Interval<double>& known, const Field& field, const ElementList& list,
                        const Ray& ray, const MethodOptions& options, Counts& counts) {
     constexpr std::size_t many = 200;
     constexpr double fine = 1e-11;
     const Vec3d& d = ray.direction;
     const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    if (known.hi < infinity<double>) {
+        const Isolation isolation = settled(known, field, list, ray, options, counts);
+        if (isolation.status == Status::hit) return isolation;
+    }
     if (options.skipping.lists && list.elements.size() > many && options.tolerance > fine &&
         largest > 1e-100 && largest < 1e100) {
         const ElementList near = reaching_elements(field, list, {ray.origin, d, 0});
         counts.skipping.list_elements += list.elements.size();
         counts.skipping.list_left_out += list.elements.size() - near.elements.size();
         if (near.certainly_empty) return {Status::miss, Interval<double>::empty_set()};
-        const Found found = search_from(outside_until, field, near, ray, options, counts);
+        const Found found = search_from(known.lo, field, near, ray, options, counts);
         if (found.isolation.status == Status::miss) return found.isolation;
         if (found.isolation.status == Status::hit && found.one_cell) return found.isolation;
     }
-    return search_from(outside_until, field, list, ray, options, counts).isolation;
+    return search_from(known.lo, field, list, ray, options, counts).isolation;
 }
 
 }  // namespace
 
 Isolation Proved::isolate(const Field& field, const ElementList& list, const Ray& ray,
                           const MethodOptions& options, Counts& counts) const {
-    return isolate_from(0, field, list, ray, options, counts);
+    return isolate_from({0.0, infinity<double>}, field, list, ray, options, counts);
 }
 
 void Proved::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
@@ -127,8 +175,8 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
         m[k] = infinity<double>;
         if (isolations.status[k] == Status::unresolved) {
             ++counts.skipping.rays_alone;
-            isolations.set(
-                k, isolate_from(isolations.t_lo[k], field, list, rays.ray(k), options, counts));
+            isolations.set(k, isolate_from({isolations.t_lo[k], isolations.t_hi[k]}, field, list,
+                                           rays.ray(k), options, counts));
         }
         if (surfaces == nullptr || isolations.status[k] == Status::miss || surfaces->found(k)) {
             continue;
