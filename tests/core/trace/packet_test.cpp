@@ -289,6 +289,43 @@ TEST(Packet, WhatIsSeenIsTheSurfaceOfTheAnswer) {
                 worst_color);
 }
 
+// On fine grids packets often know the root but not on which side of a line it is. What is found
+// then is judged by the reference, and far fewer stay open than have a line so near.
+TEST(Packet, RootsBesideGridLinesAreSettled) {
+    const Proved proved;
+    int judged = 0, unresolved = 0;
+    std::uint64_t alone = 0;
+    for (std::uint64_t seed = 900; seed < 912; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Scene scene = tools::random_scene({.elements = 10}, seed);
+        const Field field = compile(scene);
+        const ElementList all = all_elements(field);
+        const reference::ReferenceField exact(scene);
+        Random random(seed);
+        const double tolerance = seed % 2 == 0 ? 1e-12 : 1e-11;
+        const auto rays =
+            bundle_around(nasty_rays(scene, RayKind::random, 1, seed).front(), 0.1, 200, random);
+        BundleIsolations found;
+        Counts counts;
+        proved.trace_bundle(field, all, *rays, {.tolerance = tolerance}, found, nullptr, counts);
+        alone += counts.skipping.rays_alone;
+        for (std::size_t k = 0; k < rays->size(); ++k) {
+            unresolved += found.status[k] == Status::unresolved;
+            if (found.status[k] != Status::hit || random.below(4) != 0) continue;
+            const Answer answer{found[k],
+                                proved.surface(field, all, rays->ray(k), midpoint(found[k].t), {})};
+            const reference::Verdict verdict = check(exact, rays->ray(k), tolerance, answer);
+            EXPECT_EQ(verdict.fault, reference::Fault::none) << word(verdict.fault);
+            ++judged;
+        }
+    }
+    EXPECT_GT(judged, 50);
+    EXPECT_GT(alone, 50u);
+    EXPECT_LT(static_cast<std::uint64_t>(unresolved), alone / 10);
+    std::printf("%d judged, %llu alone, %d unresolved\n", judged,
+                static_cast<unsigned long long>(alone), unresolved);
+}
+
 // What the contract lets differ between instruction sets, on all that this machine has: a hit is
 // never a miss, and enclosures overlap.
 TEST(Packet, InstructionSetsAgree) {
