@@ -168,7 +168,7 @@ def chart(folder, table, peers, name="chart"):
         axis.set_xlabel(time_label())
     axes[0][-1].legend(loc="upper left", bbox_to_anchor=(1, 1))
     figure.text(0.01, -0.03, origin(table[0]) + ". Dotted: field, gradient, colour and light once "
-                "at every pixel.", fontsize=7, color="#555555")
+                "at every pixel that is hit.", fontsize=7, color="#555555")
     figure.tight_layout()
     save(figure, folder, name)
 
