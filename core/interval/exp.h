@@ -132,7 +132,7 @@ template <IeeeReal Real>
     return x < C::least ? Real(0) : scaled;
 }
 
-// 2^-x for x >= 0, of half as many operations: with k the integer nearest to x, r = x - k is exact,
+// 2^-x for x >= 0, of fewer operations: with k the integer nearest to x, r = x - k is exact,
 // and 2^-x = 2^-k 2^-r with
 //     2^-r = 1 + r q(r),  q = c0 + r (c1 + r (...)),  |r| <= 1/2,
 // q interpolated at the zeros of a Chebyshev polynomial and rounded.

@@ -33,7 +33,7 @@ enum class Order : std::uint8_t {
 struct TileNotice {
     std::size_t tile;
     PixelRect rect;
-    int stride;  // 16, 8, 4, 2 or 1
+    int stride;  // 16, 8 or 1
     // Coarse to fine, 64 or 32 while this is the only selected tile begun of the square of so many
     // pixels a side, counted from the picture's corner: until others come it stands for them all.
     int square;

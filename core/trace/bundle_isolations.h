@@ -13,7 +13,7 @@ struct BundleIsolations {
     static constexpr std::size_t capacity = RayBundle::capacity;
 
     std::array<Status, capacity> status;
-    alignas(64) std::array<double, capacity> t_lo, t_hi;  // empty on a miss and a claimed miss
+    alignas(64) std::array<double, capacity> t_lo, t_hi;  // nothing on a miss and a claimed miss
 
     [[nodiscard]] Isolation operator[](std::size_t k) const {
         if (!possibly_hit(status[k])) return {status[k], Interval<double>::empty_set()};

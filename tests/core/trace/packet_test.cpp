@@ -289,6 +289,42 @@ TEST(Packet, WhatIsSeenIsTheSurfaceOfTheAnswer) {
                 worst_color);
 }
 
+// A ray alone among many elements looks at those near it, and is answered as by all of them.
+TEST(Packet, ARayAloneAmongManyIsAnsweredAsByAll) {
+    const Proved proved;
+    int hits = 0, misses = 0;
+    Counts counts;
+    for (std::uint64_t seed = 50; seed < 52; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Scene scene = tools::random_scene({.elements = 300}, seed);
+        const Field field = compile(scene);
+        const ElementList list = all_elements(field);
+        for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
+            for (const Ray& ray : nasty_rays(scene, static_cast<RayKind>(kind), 4, seed + kind)) {
+                MethodOptions options;
+                options.tolerance = 1e-6;
+                const Isolation near = proved.isolate(field, list, ray, options, counts);
+                Counts of_all;
+                options.skipping.lists = false;
+                const Isolation all = proved.isolate(field, list, ray, options, of_all);
+                EXPECT_EQ(of_all.skipping.list_left_out, 0u);
+                ASSERT_EQ(near.status, all.status);
+                hits += near.status == Status::hit;
+                misses += near.status == Status::miss;
+                if (near.status != Status::hit) continue;
+                ASSERT_EQ(near.t.lo, all.t.lo);
+                ASSERT_EQ(near.t.hi, all.t.hi);
+            }
+        }
+    }
+    EXPECT_GT(hits, 10);
+    EXPECT_GT(misses, 10);
+    EXPECT_GT(counts.skipping.list_left_out, counts.skipping.list_elements / 20);
+    std::printf("%d hits, %d misses, %llu of %llu left out\n", hits, misses,
+                static_cast<unsigned long long>(counts.skipping.list_left_out),
+                static_cast<unsigned long long>(counts.skipping.list_elements));
+}
+
 // On fine grids packets often know the root but not on which side of a line it is. What is found
 // then is judged by the reference, and far fewer stay open than have a line so near.
 TEST(Packet, RootsBesideGridLinesAreSettled) {
