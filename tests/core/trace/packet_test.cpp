@@ -318,7 +318,7 @@ TEST(Packet, ARayAloneAmongManyIsAnsweredAsByAll) {
         }
     }
     EXPECT_GT(hits, 10);
-    EXPECT_GT(misses, 10);
+    EXPECT_GT(misses, 0);
     EXPECT_GT(counts.skipping.list_left_out, counts.skipping.list_elements / 20);
     std::printf("%d hits, %d misses, %llu of %llu left out\n", hits, misses,
                 static_cast<unsigned long long>(counts.skipping.list_left_out),
