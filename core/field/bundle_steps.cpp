@@ -475,11 +475,12 @@ HWY_INLINE EntryErrors errors_of(double u, V<D> eta, V<D> eta_slope, V<D> least,
 // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most H, (2)
 // costs 7 u H for p (d - axis, the product; t - middle, d, the product; the sum), 2 u |c - M| and
 // u^2 of its terms for c, and u (H + |c - M|) the difference. The foot moves away by 10 u |p - c|
-// more at the most; so does the circle's axis. A segment whose 1 / |m|^2 counts as 0 stands for its
+// more at the most; so does the circle's axis, whose rho and 1 / rho are off by 6 u, and rho by
+// `least_rho` below which it does not come. A segment whose 1 / |m|^2 counts as 0 stands for its
 // end a.
 template <Shape shape>
-HWY_INLINE EntryErrors etas(double u, double H, double end, const Seen<shape>& e, V<D> c_length,
-                            V<D> inverse, V<D> inverse_width) {
+HWY_INLINE EntryErrors etas(double u, double H, double end, double least_rho, const Seen<shape>& e,
+                            V<D> c_length, V<D> inverse, V<D> inverse_width) {
     const V<D> v_length = hn::Add(constant(H), c_length);
     V<D> eta = hn::MulAdd(constant(4 * u), c_length, constant(8 * u * H));
     eta = hn::MulAdd(hn::Add(e.far, constant(end)), constant(0x1p-98), eta);
@@ -489,10 +490,12 @@ HWY_INLINE EntryErrors etas(double u, double H, double end, const Seen<shape>& e
                          hn::MulAdd(constant(12 * u), v_length, hn::Mul(constant(3 * u), e.size)));
         eta = hn::Add(eta, hn::IfThenElseZero(hn::Eq(e.extra, hn::Zero(D())), e.size));
     } else if constexpr (shape == Shape::circle) {
-        eta = hn::MulAdd(constant(3), eta,
-                         hn::MulAdd(constant(16 * u), v_length, hn::Mul(constant(3 * u), e.extra)));
+        eta =
+            hn::MulAdd(constant(3), eta,
+                       hn::MulAdd(constant(24 * u), v_length, hn::Mul(constant(10 * u), e.extra)));
+        eta = hn::Add(eta, constant(least_rho));
         eta_slope = hn::Mul(hn::Mul(e.extra, at_least_0(inverse)),
-                            hn::MulAdd(constant(4), eta, hn::Mul(constant(16 * u), v_length)));
+                            hn::MulAdd(constant(4), eta, hn::Mul(constant(24 * u), v_length)));
     }
     const V<D> scale = hn::Mul(inverse_width, constant(more));
     return {hn::Mul(eta, scale), hn::Mul(hn::Add(eta, eta_slope), scale)};
@@ -514,6 +517,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
     const V<D> zero = hn::Zero(d);
     const double H =
         0.5 * (stretch.end - stretch.begin) * more + stretch.end * stretch.spread * more;
+    const double least_rho = std::sqrt(double{least_square<Real>}) * (is_coarse ? unit : 1) * more;
     V<D> error = zero, slope = zero, magnitude = zero, full_slope = zero;
     V<D> rest_above = zero, rest_below = zero;
     M<D> bad = hn::FirstN(d, 0);
@@ -540,7 +544,8 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         const V<D> cz = hn::Neg(offset_lanes(
             stretch.origin.z, hn::GatherIndex(d, field.az.data(), index), middle, stretch.axis.z));
         const V<D> c_length = hn::Mul(length_of({cx, cy, cz}), constant(more));
-        const EntryErrors eta = etas<shape>(u, H, stretch.end, e, c_length, inverse, inverse_width);
+        const EntryErrors eta =
+            etas<shape>(u, H, stretch.end, least_rho, e, c_length, inverse, inverse_width);
         const EntryErrors off = errors_of<kind>(u, eta.value, eta.slope, least, peak);
 
         const M<D> enters = is_coarse ? hn::AndNot(hn::Le(value, constant(cut)), valid) : valid;

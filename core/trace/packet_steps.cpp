@@ -42,11 +42,12 @@ HWY_INLINE Vec3v<Tag> away_from(Tag d, const BundleEntry<hn::TFromD<Tag>>& e, co
     } else {
         const Vec3v<Tag> across{hn::NegMulAdd(along, m.x, v.x), hn::NegMulAdd(along, m.y, v.y),
                                 hn::NegMulAdd(along, m.z, v.z)};
-        const V<Tag> rho = hn::Sqrt(dot<Tag>(across, across));
-        const V<Tag> off = hn::Sub(rho, extra);
-        square = hn::MulAdd(off, off, hn::Mul(along, along));
         // On the axis itself there is no direction: any finite one, which nobody relies on.
-        const V<Tag> share = hn::Div(extra, hn::Max(rho, hn::Set(d, Real(1e-30))));
+        const Root<Tag> rho =
+            root(d, hn::Max(dot<Tag>(across, across), hn::Set(d, least_square<Real>)));
+        const V<Tag> off = hn::Sub(rho.root, extra);
+        square = hn::MulAdd(off, off, hn::Mul(along, along));
+        const V<Tag> share = hn::Mul(extra, rho.inverse);
         return {hn::NegMulAdd(share, across.x, v.x), hn::NegMulAdd(share, across.y, v.y),
                 hn::NegMulAdd(share, across.z, v.z)};
     }
@@ -124,10 +125,11 @@ template <class Real>
 struct Stage;
 
 // The walk's formulas are monotonic in what they are given, and their own few roundings (below
-// 2^-20 in all, or 2^-48) are less than what `tight` takes away or adds.
+// 2^-20 in all, or 2^-48) are less than what `tight` takes away or adds; those with a rough square
+// root and a rough inverse (2^-10.4 together) are less than what `rough` does.
 template <>
 struct Stage<float> {
-    static constexpr float tight = 0x1p-18f;
+    static constexpr float tight = 0x1p-18f, rough = 0x1p-10f;
     static constexpr double last_place = 0x1p-22, tiny = 1e-20, huge = 3e38;
     static constexpr double settled = 0x1p-10;  // of half the window: Newton does the rest
     static constexpr int most_guesses = 6;
@@ -145,7 +147,7 @@ struct Stage<float> {
 
 template <>
 struct Stage<double> {
-    static constexpr double tight = 0x1p-44;
+    static constexpr double tight = 0x1p-44, rough = tight;
     static constexpr double last_place = 0x1p-50, tiny = 1e-200, huge = 1e300;
     static constexpr double settled = 0x1p-36;
     static constexpr int most_guesses = 20;
@@ -250,6 +252,7 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
     const V<Tag> slack = c(S::last_place * stage.end());
     const V<Tag> settled = c(S::settled * stage.end());
     const V<Tag> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
+    const V<Tag> least = c(least_square<Real>);
     std::uint64_t steps = 0;
 
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
@@ -271,8 +274,8 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
                 evaluate(d, stage.entries(), stage.counts(), threshold, p, direction);
 
             // A guess follows Newton, kept where the root is known to be.
-            const V<Tag> newton =
-                hn::Min(hn::Max(hn::Sub(tau, hn::Div(value.f, value.slope)), guess_lo), guess_hi);
+            const V<Tag> onto_zero = hn::Mul(value.f, rough_inverse(d, value.slope));
+            const V<Tag> newton = hn::Min(hn::Max(hn::Sub(tau, onto_zero), guess_lo), guess_hi);
             guesses = hn::Add(guesses, hn::IfThenElseZero(guessing, c(1)));
             const M<Tag> settles =
                 hn::And(guessing, hn::Or(hn::Le(hn::Abs(hn::Sub(newton, tau)), settled),
@@ -289,22 +292,23 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
             // The parabola below f: with a zero in the window, g rises up to there.
             const V<Tag> firm = hn::Mul(slope_lo, one_less);
             const V<Tag> below_square = hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
-            const V<Tag> latest = hn::Mul(
-                hn::Div(hn::Mul(c(-2), f_lo), hn::Add(firm, hn::Sqrt(hn::Max(below_square, zero)))),
-                one_more);
+            const V<Tag> steepness = hn::Add(firm, rough_sqrt(d, below_square));
+            const V<Tag> latest =
+                hn::Mul(hn::Mul(c(-2 * (1 + S::rough)), f_lo), rough_inverse(d, steepness));
             const V<Tag> latest_tau = hn::Add(tau, latest);
             const M<Tag> rises =
-                hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, zero)),
+                hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, least)),
                                          hn::Le(latest_tau, end)));
 
             // The parabola above f: up to its zero there is no root.
             const V<Tag> a = hn::Mul(f_hi, one_less);
             const V<Tag> b = hn::MulAdd(hn::Abs(slope_hi), hn::Set(d, tight), slope_hi);
-            const V<Tag> root = hn::Sqrt(hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
+            const V<Tag> root = rough_sqrt(d, hn::MulAdd(b, b, hn::Mul(hn::Mul(c(-2), a), rise)));
             const M<Tag> upward = hn::Gt(b, zero);
             const V<Tag> numerator = hn::IfThenElse(upward, hn::Mul(c(-2), a), hn::Sub(root, b));
             const V<Tag> denominator = hn::IfThenElse(upward, hn::Add(root, b), rise);
-            const V<Tag> safe = hn::Sub(hn::Mul(hn::Div(numerator, denominator), one_less), slack);
+            const V<Tag> quotient = hn::Mul(numerator, rough_inverse(d, denominator));
+            const V<Tag> safe = hn::MulSub(quotient, c(1 - S::rough), slack);
             const M<Tag> steps_on = hn::AndNot(rises, walking);
             // Nothing gets on, or a number is lost: not slack < safe < infinity.
             undecided = hn::Or(
@@ -316,13 +320,15 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
             guess_lo = hn::IfThenElse(rises, tau, guess_lo);
             guess_hi = hn::IfThenElse(rises, latest_tau, guess_hi);
             // The zero of f + f' x + f'' x^2 / 2, with f'' from the step before: a guess.
-            const V<Tag> curvature = hn::Div(hn::Sub(value.slope, last_slope),
-                                             hn::Max(hn::Sub(tau, last_tau), c(S::tiny)));
+            const V<Tag> curvature =
+                hn::Mul(hn::Sub(value.slope, last_slope),
+                        rough_inverse(d, hn::Max(hn::Sub(tau, last_tau), c(S::tiny))));
             const V<Tag> bent =
                 hn::MulAdd(value.slope, value.slope,
                            hn::Mul(hn::Mul(c(-2), value.f), step > 0 ? curvature : zero));
-            const V<Tag> onward = hn::Div(hn::Mul(c(-2), value.f),
-                                          hn::Add(value.slope, hn::Sqrt(hn::Max(bent, zero))));
+            const V<Tag> turned = rough_sqrt(d, hn::Max(bent, least));
+            const V<Tag> onward =
+                hn::Mul(hn::Mul(c(-2), value.f), rough_inverse(d, hn::Add(value.slope, turned)));
             const V<Tag> first_guess = hn::Min(hn::Max(hn::Add(tau, onward), tau), latest_tau);
             last_tau = tau;
             last_slope = value.slope;
@@ -401,6 +407,34 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
         d, hn::And(hn::BitCast(bits, x), hn::Set(bits, std::uint64_t{0x7ff0000000000000})));
 }
 
+// The cell of the grid (Precision in core/trace/isolate.h), in units of t: directions scaled so
+// that their largest component lies in [1, 2) make t half as long there, as in core/trace/clip.h,
+// and so does the cell. Bit by bit the one of a ray alone.
+HWY_INLINE V<D> cell_of(D d, double half_width, const Vec3v<D>& direction) {
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
+    const V<D> largest =
+        hn::Max(hn::Max(hn::Abs(direction.x), hn::Abs(direction.y)), hn::Abs(direction.z));
+    const V<D> shift = hn::IfThenElse(hn::Lt(largest, c(1)), c(2), c(1));
+    const V<D> sx = hn::Mul(direction.x, shift), sy = hn::Mul(direction.y, shift),
+               sz = hn::Mul(direction.z, shift);
+    const V<D> square = hn::Add(hn::Add(hn::Mul(sx, sx), hn::Mul(sy, sy)), hn::Mul(sz, sz));
+    const V<D> speed = hn::Mul(hn::Sqrt(square), c(1 + 8 * 0x1p-53));
+    return hn::Mul(
+        greatest_power_of_two(d, hn::Mul(hn::Div(c(half_width), speed), c(1 - 8 * 0x1p-53))),
+        shift);
+}
+
+// That cell where it is the same for all directions, of length 1 within 2^-50; else 0.
+double common_cell(double half_width) {
+    const auto power = [](double x) {
+        int exponent = 0;
+        std::frexp(x, &exponent);
+        return std::ldexp(0.5, exponent);
+    };
+    const double least = power(half_width * (1 - 0x1p-47));
+    return least == power(half_width * (1 + 0x1p-47)) ? least : 0;
+}
+
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
 // f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
 // least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
@@ -408,8 +442,8 @@ HWY_INLINE V<D> greatest_power_of_two(D d, V<D> x) {
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
 std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
-                            double left_out, Lanes::State pinned, Lanes::State otherwise,
-                            Batch& batch, Lanes& lanes) {
+                            double common, double left_out, Lanes::State pinned,
+                            Lanes::State otherwise, Batch& batch, Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
@@ -426,19 +460,8 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
     for (std::size_t first = 0; first < batch.count; first += N) {
         const Vec3v<D> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first),
                                  hn::Load(d, batch.dz + first)};
-        // The cell, in units of t: directions scaled so that their largest component lies in
-        // [1, 2) make t half as long here, as in core/trace/clip.h, and so does the cell.
-        const V<D> largest =
-            hn::Max(hn::Max(hn::Abs(direction.x), hn::Abs(direction.y)), hn::Abs(direction.z));
-        const V<D> shift = hn::IfThenElse(hn::Lt(largest, c(1)), c(2), c(1));
-        const V<D> sx = hn::Mul(direction.x, shift), sy = hn::Mul(direction.y, shift),
-                   sz = hn::Mul(direction.z, shift);
-        const V<D> square = hn::Add(hn::Add(hn::Mul(sx, sx), hn::Mul(sy, sy)), hn::Mul(sz, sz));
-        const V<D> speed = hn::Mul(hn::Sqrt(square), c(1 + 8 * 0x1p-53));
-        const V<D> cell = hn::Mul(
-            greatest_power_of_two(d, hn::Mul(hn::Div(c(half_width), speed), c(1 - 8 * 0x1p-53))),
-            shift);
-
+        const V<D> cell = common > 0 ? c(common) : cell_of(d, half_width, direction);
+        const V<D> inverse_cell = hn::Div(c(1), cell);
         V<D> m = hn::Load(d, batch.t + first);
         V<D> lo = zero, hi = zero;
         V<D> outside = c(window.begin);     // f < 0 up to there
@@ -453,26 +476,31 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             const V<D> f_hi = hn::Add(value.f, c(bounds.above));
             const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
             const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(left_out));
-            const V<D> delta = hn::Div(hn::Mul(c(2.001), size), value.slope);
+            const V<D> inverse = hn::Div(c(1), value.slope);
+            const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
             const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
             const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
-            const V<D> slope_hi = hn::Mul(hn::Add(value.slope, bend), c(1 + 0x1p-40));
             // Then size / slope_lo < delta, and f < -left_out at m - delta.
             const M<D> firm = hn::And(
                 hn::And(hn::Gt(value.slope, zero), hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
                 hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
                         hn::Le(hn::Add(m, delta), c(window.end))));
-            // The zeros of the outer lines, each with its steeper or flatter slope.
+            // The zeros of the outer lines, each with its steeper or flatter slope: with b = bend /
+            // slope < 1/2, 1 / (1 - b) <= 1 + b + 2 b^2 and 1 / (1 + b) >= 1 - b.
+            const V<D> b = hn::Mul(bend, inverse);
+            const V<D> flat = hn::Mul(hn::MulAdd(hn::MulAdd(c(2), b, c(1)), b, c(1)),
+                                      hn::Mul(inverse, c(1 + 0x1p-40)));
+            const V<D> steep = hn::Mul(hn::Sub(c(1), b), hn::Mul(inverse, c(1 - 0x1p-40)));
             const V<D> first_x =
-                hn::Div(hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), slope_lo, slope_hi));
+                hn::Mul(hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), flat, steep));
             const V<D> last_x =
-                hn::Div(hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), slope_hi, slope_lo));
+                hn::Mul(hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), steep, flat));
             const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
             const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
             const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
             outside = hn::IfThenElse(hn::And(open, firm), from, outside);
             inside = hn::IfThenElse(hn::And(open, firm), to, inside);
-            const V<D> line = hn::Mul(hn::Floor(hn::Div(from, cell)), cell);
+            const V<D> line = hn::Mul(hn::Floor(hn::Mul(from, inverse_cell)), cell);
             const V<D> next = hn::Add(line, cell);
             const M<D> decided = hn::And(hn::And(open, firm),
                                          hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
@@ -483,7 +511,7 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
             done = hn::Or(done, decided);
             // The next m lies within delta of this one, so that g still rises up to there.
             open = hn::AndNot(decided, hn::And(open, firm));
-            m = hn::IfThenElse(open, hn::Sub(m, hn::Div(value.f, value.slope)), m);
+            m = hn::IfThenElse(open, hn::NegMulAdd(value.f, inverse, m), m);
         }
         alignas(64) double lo_out[widest], hi_out[widest];
         hn::Store(hn::IfThenElse(done, lo, outside), d, lo_out);
@@ -509,6 +537,7 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
                       Lanes::State otherwise, Lanes& lanes) {
     Batch batch;
     std::uint64_t steps = 0;
+    const double common = common_cell(half_width);
     for (std::size_t k = first; k < end; ++k) {
         if (lanes.state[k] != Lanes::candidate) continue;
         if (!window.fine_usable) {
@@ -524,13 +553,13 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
         batch.dz[at] = lanes.dz[k];
         batch.t[at] = lanes.guess[k];
         if (batch.count == widest) {
-            steps += enclose_batch(window, threshold, half_width, left_out, pinned, otherwise,
-                                   batch, lanes);
+            steps += enclose_batch(window, threshold, half_width, common, left_out, pinned,
+                                   otherwise, batch, lanes);
         }
     }
     if (batch.count > 0)
-        steps +=
-            enclose_batch(window, threshold, half_width, left_out, pinned, otherwise, batch, lanes);
+        steps += enclose_batch(window, threshold, half_width, common, left_out, pinned, otherwise,
+                               batch, lanes);
     return steps;
 }
 
