@@ -73,8 +73,10 @@ struct Rendering {
     Seconds seconds;  // compile, trace, shade and total of this frame
 };
 
+// On the canvas of the frame before, where there is one.
 Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task task,
-                      const std::string& label, Progress& progress) {
+                      std::unique_ptr<Canvas> canvas, const std::string& label,
+                      Progress& progress) {
     const Clock::time_point start = Clock::now();
     Rendering rendering;
     rendering.picture = make_picture(scene, arguments.width, arguments.height,
@@ -82,8 +84,10 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
     rendering.seconds.compile = seconds_since(start);
 
     const Clock::time_point compiled = Clock::now();
-    rendering.canvas =
-        std::make_unique<Canvas>(arguments.width, arguments.height, !arguments.answers.empty());
+    rendering.canvas = canvas ? std::move(canvas)
+                              : std::make_unique<Canvas>(arguments.width, arguments.height,
+                                                         !arguments.answers.empty());
+    rendering.canvas->forget_lists();
     JobSettings settings;
     settings.threads = arguments.work.threads;
     settings.task = task;
@@ -164,8 +168,8 @@ void run(const RenderArguments& arguments) {
                 ? ""
                 : std::to_string(run) + "/" + std::to_string(arguments.repeat) + ": ";
         stop_if_interrupted();  // a picture may be done before it is looked for again
-        rendering = {};         // not two canvases at a time
-        rendering = render_once(scene, arguments, task, label, progress);
+        rendering =
+            render_once(scene, arguments, task, std::move(rendering.canvas), label, progress);
         runs.push_back(rendering.seconds);
     }
 

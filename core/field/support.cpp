@@ -47,11 +47,12 @@ ElementList reaching_elements(const Field& field, const ElementList& parent, con
     ElementList list;
     const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
     list.rest = parent.rest + Interval<double>(-peaks.rest_below * sums, peaks.rest_above * sums);
-    list.elements.assign(kept.element.begin(),
-                         kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
     const double slack =
         static_cast<double>(candidates.size() + 4) * 0x1p-52 * (peaks.magnitude + field.threshold);
     list.certainly_empty = peaks.above + list.rest.hi + slack < field.threshold;
+    if (list.certainly_empty) return list;
+    list.elements.assign(kept.element.begin(),
+                         kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
     return list;
 }
 

@@ -13,11 +13,12 @@
 namespace ivory {
 
 // A sorted list of elements that stands for the whole field on some set of rays:
-// sum over the list + [rest.lo, rest.hi] encloses the sum of all F_i at every point of these rays.
+// sum over the list + [rest.lo, rest.hi] encloses the sum of all F_i at every point of these rays,
+// unless the list is certainly empty.
 struct ElementList {
     std::vector<std::uint32_t> elements;  // indices into Field, ascending
     Interval<double> rest{0.0, 0.0};
-    bool certainly_empty = false;  // f < 0 on all these rays: every one of them is a miss
+    bool certainly_empty = false;  // f < 0 on all these rays: every one is a miss, none needs more
 };
 
 // All rays from `apex` whose direction makes an angle of at most asin(sine) with `axis`.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <span>
@@ -24,14 +25,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int tile_side = TileGrid::tile_side;
 constexpr std::size_t pixels_in_tile = tile_side * tile_side;
 
-// What a worker adds up for itself, and the report gets at its end; in cache lines of its own.
-struct alignas(128) Tally {
-    Counts counts;
-    Clock::duration tracing{}, shading{};
-    std::size_t tiles = 0;
-    std::vector<std::uint8_t> reached;  // by element
-};
-
 // The pixels of a tile between tracing and the frame: nothing of a tile is written before all of it
 // is known, so that a cancelled tile stays what it was.
 struct TracedTile {
@@ -42,6 +35,16 @@ struct TracedTile {
     alignas(64) std::array<Rgba8, pixels_in_tile> colors;
 
     [[nodiscard]] std::size_t size() const { return rays.size(); }
+};
+
+// What a worker works on and adds up for itself, and the report gets at its end; in cache lines of
+// its own.
+struct alignas(128) Tally {
+    Counts counts;
+    Clock::duration tracing{}, shading{};
+    std::size_t tiles = 0;
+    std::vector<std::uint8_t> reached;  // by element
+    std::unique_ptr<TracedTile> traced;
 };
 
 // The first pass has at least so many pixels, where a tile's share of them is no more than 4.
@@ -212,13 +215,16 @@ class FrameJob::Work {
 
     void work(Tally& tally) {
         try {
+            const Clock::time_point start = Clock::now();
             tally.reached.resize(picture_.field->size());
+            tally.traced = std::make_unique<TracedTile>();
             while (!stopped()) {
                 const std::size_t step = next_.fetch_add(1, std::memory_order_relaxed);
                 if (step >= steps_) break;
                 if (!take(step, tally)) cut_short_ = true;
             }
             if (next_.load(std::memory_order_relaxed) < steps_) cut_short_ = true;
+            tally.tracing = Clock::now() - start - tally.shading;
         } catch (...) {
             const std::lock_guard lock(mutex_);
             if (!failure_) failure_ = std::current_exception();
@@ -237,11 +243,9 @@ class FrameJob::Work {
     // False: cancelled on the way.
     bool take(std::size_t step, Tally& tally) {
         if (step < region_order_.size()) {
-            const Clock::time_point start = Clock::now();
             const std::size_t region = region_order_[step];
             region_lists_[region] = narrowed(all_, regions().rect(region), tally);
             region_done_[region].store(1, std::memory_order_release);
-            tally.tracing += Clock::now() - start;
             return true;
         }
         step -= region_order_.size();
@@ -280,6 +284,8 @@ class FrameJob::Work {
         const int square = sparse ? strides_[pass] : tile_side;
         std::uint32_t begun = 0;  // squares, one bit each
         bool done = true;
+        const bool painted = paints_at_once(block, pass);
+        if (painted) paint_empty(rect);
         for_squares_in(tiles(), rect, [&](std::size_t tile) {
             if (!done || !selected(tile)) return;
             const PixelRect corner = tiles().rect(tile);
@@ -288,10 +294,20 @@ class FrameJob::Work {
             const std::uint32_t bit = 1u << (row * (TileGrid::block_side / square) + column);
             if (sparse && (begun & bit) != 0) return;
             begun |= bit;
-            done = take_tile(tile, block, pass, square, tally);
+            done = take_tile(tile, block, pass, square, painted, tally);
         });
         if (strides_[pass] <= tile_side) block_lists_[block] = {};  // each tile has its own
         return done;
+    }
+
+    // Whether all tiles of the block are empty, and this job's.
+    bool paints_at_once(std::size_t block, std::size_t pass) const {
+        if (pass > 0 || !block_lists_[block].certainly_empty) return false;
+        bool all = true;
+        for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
+            all = all && selected(tile) && !canvas_.tiles[tile].has_list;
+        });
+        return all;
     }
 
     // The block's list, where one of its tiles will need it.
@@ -304,13 +320,12 @@ class FrameJob::Work {
         if (!needed) return true;
         const std::size_t region = region_of(block);
         if (!wait_until(region_done_[region], 1)) return false;
-        const Clock::time_point start = Clock::now();
         block_lists_[block] = narrowed(region_lists_[region], rect, tally);
-        tally.tracing += Clock::now() - start;
         return true;
     }
 
-    bool take_tile(std::size_t index, std::size_t block, std::size_t pass, int square,
+    // `painted`: where it is empty it has its colour already.
+    bool take_tile(std::size_t index, std::size_t block, std::size_t pass, int square, bool painted,
                    Tally& tally) {
         TileState& tile = canvas_.tiles[index];
         const bool first = tile_begun_[index] == 0;
@@ -319,10 +334,8 @@ class FrameJob::Work {
         tile_begun_[index] = 1;
         if (first) {
             if (!tile.has_list) {
-                const Clock::time_point start = Clock::now();
                 tile.list = narrowed(block_lists_[block], tiles().rect(index), tally);
                 tile.has_list = true;
-                tally.tracing += Clock::now() - start;
             }
             ++tally.tiles;
             if (!tile.list.certainly_empty) {
@@ -338,6 +351,7 @@ class FrameJob::Work {
         } else if (!tile.list.certainly_empty) {
             done = trace_tile(index, strides_[pass], first, tally);
         } else if (first) {
+            if (!painted) paint_empty(tiles().rect(index));
             leave_empty(index);
         }
         const bool has_new = first || !tile.list.certainly_empty;
@@ -355,30 +369,32 @@ class FrameJob::Work {
         }
     }
 
-    void leave_empty(std::size_t index) {
+    // Misses, all over the rectangle.
+    void paint_empty(const PixelRect& rect) const {
         Frame& frame = canvas_.frame;
-        const PixelRect rect = tiles().rect(index);
-        std::array<Rgba8, tile_side> row;
+        std::array<Rgba8, TileGrid::block_side> row;
         row.fill(picture_.lighting.background);
         for (int j = rect.y0; j < rect.y1; ++j) {
             const std::size_t p = frame.at(rect.x0, j);
             std::fill_n(&frame.status[p], rect.width(), Status::miss);
             std::copy_n(row.begin(), rect.width(), &frame.color[p]);
         }
+    }
+
+    void leave_empty(std::size_t index) const {
         TileState& tile = canvas_.tiles[index];
         tile.stride = 1;
         tile.empty = true;
         tile.pixels = {};
         tile.pixels[static_cast<std::size_t>(Status::miss)] =
-            static_cast<std::uint16_t>(rect.area());
+            static_cast<std::uint16_t>(tiles().rect(index).area());
         tile.enclosure_width_max = 0;
         tile.unresolved_width_max = 0;
     }
 
     bool trace_tile(std::size_t index, int stride, bool first, Tally& tally) {
         const TileState& tile = canvas_.tiles[index];
-        const Clock::time_point start = Clock::now();
-        TracedTile traced;
+        TracedTile& traced = *tally.traced;
         gather(traced, index, stride, first ? 0 : tile.stride);
         BundleIsolations& isolations = traced.isolations;
         const Field& field = *picture_.field;
@@ -402,11 +418,10 @@ class FrameJob::Work {
         }
         if (any) find_surface(traced, tile.list, again);
         if (stopped()) return false;
-        const Clock::time_point between = Clock::now();
-        tally.tracing += between - start;
+        const Clock::time_point traced_at = Clock::now();
         paint(traced);
         commit(index, stride, first, traced);
-        tally.shading += Clock::now() - between;
+        tally.shading += Clock::now() - traced_at;
         return true;
     }
 
@@ -417,6 +432,7 @@ class FrameJob::Work {
         const Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
         RayBundle& rays = traced.rays;
+        rays.part_count = 0;
         rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
         const bool in_parts =
             with_parts && canvas_.tiles[index].list.elements.size() >= BundleField::parts_elements;
@@ -499,15 +515,13 @@ class FrameJob::Work {
                 k += 1;
             }
         }
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            const Status status = isolations.status[k];
-            ++tile.pixels[static_cast<std::size_t>(status)];
-            if (!possibly_hit(status)) continue;
-            // Primary rays have length 1, so that a span of t is a length.
-            double& widest =
-                status == Status::unresolved ? tile.unresolved_width_max : tile.enclosure_width_max;
-            widest = std::max(widest, sub_up(isolations.t_hi[k], isolations.t_lo[k]));
+        const BundleTally tally = tally_of(isolations, traced.size());
+        for (std::size_t status = 0; status < tile.pixels.size(); ++status) {
+            tile.pixels[status] += static_cast<std::uint16_t>(tally.rays[status]);
         }
+        // Primary rays have length 1, so that a span of t is a length.
+        tile.enclosure_width_max = std::max(tile.enclosure_width_max, tally.widest);
+        tile.unresolved_width_max = std::max(tile.unresolved_width_max, tally.widest_unresolved);
         tile.stride = std::min(stride, tile_side);
     }
 
@@ -516,20 +530,23 @@ class FrameJob::Work {
     void commit_run(const TracedTile& traced, std::size_t k, std::size_t p, bool colored) const {
         Frame& frame = canvas_.frame;
         const BundleIsolations& isolations = traced.isolations;
-        std::copy_n(&isolations.status[k], count, &frame.status[p]);
-        if (colored) std::copy_n(&traced.colors[k], count, &frame.color[p]);
+        // Of a size that the compiler knows: no call.
+        const auto copy = [](const auto& from, std::size_t at, auto& plane, std::size_t to) {
+            std::memcpy(&plane[to], &from[at], count * sizeof(plane[to]));
+        };
+        copy(isolations.status, k, frame.status, p);
+        if (colored) copy(traced.colors, k, frame.color, p);
         const auto hit = [](Status status) { return possibly_hit(status); };
         if (std::none_of(&isolations.status[k], &isolations.status[k] + count, hit)) return;
-        std::copy_n(&isolations.t_lo[k], count, &frame.t_lo[p]);
-        std::copy_n(&isolations.t_hi[k], count, &frame.t_hi[p]);
+        copy(isolations.t_lo, k, frame.t_lo, p);
+        copy(isolations.t_hi, k, frame.t_hi, p);
         if (!frame.look.empty()) {
             for (std::size_t i = 0; i < count; ++i) {
                 if (possibly_hit(isolations.status[k + i]))
                     frame.look[p + i] = traced.surfaces.look(k + i);
             }
         }
-        if (frame.surface.empty()) return;
-        std::copy_n(&traced.surfaces.points[k], count, &frame.surface[p]);
+        if (!frame.surface.empty()) copy(traced.surfaces.points, k, frame.surface, p);
     }
 
     // Whether an element with another colour than before is in the list.
@@ -550,13 +567,14 @@ class FrameJob::Work {
         const TileState& tile = canvas_.tiles[index];
         const Clock::time_point start = Clock::now();
         if (tile.empty) {
+            paint_empty(tiles().rect(index));
             leave_empty(index);
         } else if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
             const bool looks_hold =
                 !frame.look.empty() && frame.surface.empty() &&
                 !(tile.has_list ? reached_by_recolored(tile.list) : !settings_.recolored.empty());
-            TracedTile traced;
+            TracedTile& traced = *tally.traced;
             gather(traced, index, tile.stride, 0, !looks_hold);
             traced.surfaces.exact = !frame.surface.empty();
             traced.surfaces.clear(traced.size());

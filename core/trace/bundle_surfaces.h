@@ -18,7 +18,7 @@ struct Look {
 };
 
 struct BundleSurfaces {
-    static constexpr std::size_t room = RayBundle::capacity + 16;  // vectors are read whole
+    static constexpr std::size_t room = RayBundle::room;
 
     // Normals and colours to shade with; nx is NaN where there is no surface, or none found yet.
     alignas(64) std::array<float, room> nx, ny, nz, r, g, b;
@@ -29,7 +29,7 @@ struct BundleSurfaces {
 
     // Nothing is found yet.
     void clear(std::size_t count) {
-        std::fill_n(nx.begin(), count + (room - RayBundle::capacity),
+        std::fill_n(nx.begin(), std::min(count + 16, room),
                     std::numeric_limits<float>::quiet_NaN());
         if (!exact) return;
         for (std::size_t k = 0; k < count; ++k) {

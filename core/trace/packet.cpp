@@ -25,9 +25,10 @@ double exact_limit(const Field& field, const Bundle& bundle) {
 
 void PacketTracer::take(const RayBundle& rays, bool in_parts) {
     lanes_.count = rays.count;
-    std::copy_n(rays.dx.begin(), rays.count, lanes_.dx.begin());
-    std::copy_n(rays.dy.begin(), rays.count, lanes_.dy.begin());
-    std::copy_n(rays.dz.begin(), rays.count, lanes_.dz.begin());
+    lanes_.dx = rays.dx.data();
+    lanes_.dy = rays.dy.data();
+    lanes_.dz = rays.dz.data();
+    packet_steps().prepare(lanes_);
 
     if (rays.part_count > 0 && in_parts) {
         parts_.assign(rays.parts.begin(), rays.parts.begin() + rays.part_count);
@@ -37,26 +38,31 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
     parts_[0].end = static_cast<std::uint32_t>(rays.count);
 }
 
-// Of the lanes whose m lies in the window: in float, and in double where that is wanted or float
-// loses the direction.
-void PacketTracer::surface_in(const Window& window, const BundlePart& part, const Field& field,
-                              BundleSurfaces& surfaces) {
-    const auto wanted = [&](std::size_t k) { return m_[k] >= window.begin && m_[k] < window.end; };
-    bool any = false;
-    for (std::size_t k = part.first; k < part.end && !any; ++k) any = wanted(k);
-    if (!any) return;
+// Of the hits whose t lies in the window: in float, and in double where that is wanted or float
+// loses the direction. Of how many it is known now.
+std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& part,
+                                     const Field& field, double limit, BundleSurfaces& surfaces) {
     if (window.coarse_usable) {
-        packet_steps().look(window, field, bundle_field_.unit(), lanes_, part.first, part.end,
-                            m_.data(), surfaces);
+        const Looked looked = packet_steps().look(window, field, bundle_field_.unit(), limit,
+                                                  lanes_, part.first, part.end, surfaces);
+        if (looked.wanted == 0) return 0;
+        if (looked.known == looked.wanted && !surfaces.exact) return looked.known;
     }
+    const double end = std::min(window.end, limit);
     index_.clear();
     t_.clear();
+    std::size_t found = 0;
     for (std::size_t k = part.first; k < part.end; ++k) {
-        if (!wanted(k) || surfaces.found(k)) continue;
+        if (lanes_.state[k] != Lanes::hit) continue;
+        if (!(lanes_.t[k] >= window.begin && lanes_.t[k] < end)) continue;
+        if (surfaces.found(k)) {
+            ++found;
+            continue;
+        }
         index_.push_back(static_cast<std::uint32_t>(k));
-        t_.push_back(m_[k]);
+        t_.push_back(lanes_.t[k]);
     }
-    if (index_.empty()) return;
+    if (index_.empty()) return found;
     points_.resize(index_.size());
     packet_steps().surface(bundle_field_.refined(), field, lanes_, index_, t_.data(),
                            points_.data());
@@ -64,31 +70,34 @@ void PacketTracer::surface_in(const Window& window, const BundlePart& part, cons
         const std::size_t k = index_[i];
         if (!surfaces.seen(k)) surfaces.set_seen(k, points_[i]);
         if (surfaces.exact) surfaces.points[k] = points_[i];
+        if (surfaces.found(k)) ++found;
     }
+    return found;
 }
 
-void PacketTracer::isolate(const Field& field, const ElementList& list, const RayBundle& rays,
-                           const Settings& settings, BundleIsolations& isolations,
-                           BundleSurfaces* surfaces, Counts& counts) {
+std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
+                                  const RayBundle& rays, const Settings& settings,
+                                  BundleIsolations& isolations, BundleSurfaces* surfaces,
+                                  Counts& counts) {
     if (surfaces != nullptr) surfaces->clear(rays.count);
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
                              settings.skipping.windows)) {
         for (std::size_t k = 0; k < rays.count; ++k) {
             isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
         }
-        return;
+        return 0;
     }
     const PacketSteps& steps = packet_steps();
+    lanes_.t_lo = isolations.t_lo.data();
+    lanes_.t_hi = isolations.t_hi.data();
     take(rays, settings.skipping.parts);
     counts.skipping.rays += rays.count;
-    steps.prepare(lanes_);
     const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
     const double limit = exact_limit(field, rays.bundle);
     const auto any = [&](const BundlePart& part, Lanes::State state) {
-        const auto begin = lanes_.state.begin();
-        return std::find(begin + part.first, begin + part.end, std::int32_t{state}) !=
-               begin + part.end;
+        return steps.any(lanes_, state, part.first, part.end);
     };
+    std::size_t found = 0;
     const BundlePart& all = parts_[0];
     bundle_field_.for_windows(
         parts_, [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
@@ -140,47 +149,39 @@ void PacketTracer::isolate(const Field& field, const ElementList& list, const Ra
             counts.evaluations += fine;
             counts.element_evaluations += fine * window.fine.size();
             if (surfaces != nullptr) {
-                for (std::size_t k = part.first; k < part.end; ++k) {
-                    const double m = midpoint(Interval<double>(lanes_.t_lo[k], lanes_.t_hi[k]));
-                    m_[k] = lanes_.state[k] == Lanes::hit && m < limit ? m : nan;
-                }
-                surface_in(window, part, field, *surfaces);
+                found += surface_in(window, part, field, limit, *surfaces);
             }
             return any(all, Lanes::walking);
         });
     counts.skipping.stretches += bundle_field_.stretches();
     counts.skipping.stretches_ended += bundle_field_.stretches_ended();
-    for (std::size_t k = 0; k < rays.count; ++k) {
-        const std::int32_t state = lanes_.state[k];
-        isolations.status[k] = state == Lanes::walking ? Status::miss
-                               : state == Lanes::hit   ? Status::hit
-                                                       : Status::unresolved;
-        isolations.t_lo[k] = lanes_.t_lo[k];
-        isolations.t_hi[k] = state == Lanes::walking ? infinity<double> : lanes_.t_hi[k];
-    }
+    steps.conclude(lanes_, isolations);
+    return found;
 }
 
 void PacketTracer::surface(const Field& field, const ElementList& list, const RayBundle& rays,
                            double tolerance, std::span<const double> m, BundleSurfaces& surfaces) {
     const double limit = exact_limit(field, rays.bundle);
     for (std::size_t k = 0; k < rays.count; ++k) {
-        m_[k] = m[k] < limit ? m[k] : nan;
         if (!std::isfinite(m[k])) continue;
         surfaces.nx[k] = std::numeric_limits<float>::quiet_NaN();
         if (surfaces.exact) surfaces.points[k].normal.x = nan;
     }
     if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
     take(rays, true);
-    packet_steps().prepare(lanes_);
+    for (std::size_t k = 0; k < rays.count; ++k) {
+        lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
+        lanes_.t[k] = m[k];
+    }
     bundle_field_.for_windows(
         parts_,
         [&](const BundlePart& part, double t0, double t1) {
-            return std::any_of(m_.begin() + part.first, m_.begin() + part.end,
-                               [=](double t) { return t >= t0 && t < t1; });
+            return std::any_of(m.begin() + part.first, m.begin() + part.end,
+                               [=](double t) { return t >= t0 && t < t1 && t < limit; });
         },
         std::numeric_limits<int>::max(),
         [&](Window& window, const BundlePart& part) {
-            surface_in(window, part, field, surfaces);
+            surface_in(window, part, field, limit, surfaces);
             return true;
         });
 }

@@ -8,7 +8,6 @@
 // it was found. Each ray's steps depend on the windows and on itself alone, not on its neighbours.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,10 +35,10 @@ class PacketTracer {
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
     // on [0, t.lo), and where t.hi is finite the first root lies before it. `list` has to be valid
     // on the bundle. Unless `surfaces` is null it gets what `surface` would give for the hits'
-    // midpoints.
-    void isolate(const Field& field, const ElementList& list, const RayBundle& rays,
-                 const Settings& settings, BundleIsolations& isolations, BundleSurfaces* surfaces,
-                 Counts& counts);
+    // midpoints; returns of how many it has found it.
+    std::size_t isolate(const Field& field, const ElementList& list, const RayBundle& rays,
+                        const Settings& settings, BundleIsolations& isolations,
+                        BundleSurfaces* surfaces, Counts& counts);
 
     // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
     // `found` then have to be found by other means.
@@ -48,14 +47,13 @@ class PacketTracer {
 
   private:
     void take(const RayBundle& rays, bool in_parts);
-    void surface_in(const Window& window, const BundlePart& part, const Field& field,
-                    BundleSurfaces& surfaces);
+    std::size_t surface_in(const Window& window, const BundlePart& part, const Field& field,
+                           double limit, BundleSurfaces& surfaces);
 
     BundleField bundle_field_;
     Lanes lanes_;
     std::vector<BundlePart> parts_;
-    std::array<double, RayBundle::capacity> m_;  // where a lane's surface is wanted, or NaN
-    std::vector<std::uint32_t> index_;  // of lanes in a window, their t and what is found there
+    std::vector<std::uint32_t> index_;  // of hits in a window, their t and what is found there
     std::vector<double> t_;
     std::vector<SurfacePoint> points_;
 };

@@ -105,18 +105,34 @@ HWY_INLINE FieldValue<Tag> evaluate(Tag d, const Entries& entries, const Counts&
     return sum;
 }
 
+// A vector of doubles that stands there, rounded.
+HWY_INLINE V<F> rounded(const double* values) {
+    const D d;
+#if HWY_TARGET == HWY_SCALAR
+    return hn::DemoteTo(F(), hn::LoadU(d, values));
+#else
+    const hn::Half<F> half;
+    return hn::Combine(F(), hn::DemoteTo(half, hn::LoadU(d, values + hn::Lanes(d))),
+                       hn::DemoteTo(half, hn::LoadU(d, values)));
+#endif
+}
+
 void prepare(Lanes& lanes) {
-    for (std::size_t k = 0; k < lanes.count; ++k) {
-        lanes.fx[k] = static_cast<float>(lanes.dx[k]);
-        lanes.fy[k] = static_cast<float>(lanes.dy[k]);
-        lanes.fz[k] = static_cast<float>(lanes.dz[k]);
-        lanes.state[k] = Lanes::walking;
-    }
-    // The last vector is whole: numbers, but nobody's.
-    for (std::size_t k = lanes.count; k < lanes.count + Lanes::room - Lanes::capacity; ++k) {
-        lanes.fx[k] = lanes.fy[k] = lanes.fz[k] = 0;
-        lanes.dx[k] = lanes.dy[k] = lanes.dz[k] = 0;
-        lanes.state[k] = Lanes::unused;
+    const F d;
+    const hn::RebindToSigned<F> di;
+    const std::size_t N = hn::Lanes(d);
+    const auto walking = hn::Set(di, std::int32_t{Lanes::walking});
+    const auto unused = hn::Set(di, std::int32_t{Lanes::unused});
+    for (std::size_t k = 0; k < lanes.count; k += N) {
+        const auto used = hn::FirstN(di, lanes.count - k);
+        // The last vector is whole: numbers, but nobody's.
+        const auto put = [&](const double* values, float* to) HWY_ATTR {
+            hn::StoreU(hn::IfThenElseZero(hn::RebindMask(d, used), rounded(values + k)), d, to + k);
+        };
+        put(lanes.dx, lanes.fx.data());
+        put(lanes.dy, lanes.fy.data());
+        put(lanes.dz, lanes.fz.data());
+        hn::StoreU(hn::IfThenElse(used, walking, unused), di, &lanes.state[k]);
     }
 }
 
@@ -183,11 +199,42 @@ HWY_INLINE M<F> lanes_in(F d, Lanes::State state, const Lanes& lanes, std::size_
     return hn::And(hn::RebindMask(d, in_state), hn::FirstN(d, end - first));
 }
 
+// The states of so many lanes as a vector has doubles; such vectors turn into integers and back on
+// every machine.
+HWY_INLINE V<D> states_of(const Lanes& lanes, std::size_t first) {
+    return hn::PromoteTo(D(), hn::LoadU(hn::Rebind<std::int32_t, D>(), &lanes.state[first]));
+}
+
 HWY_INLINE M<D> lanes_in(D d, Lanes::State state, const Lanes& lanes, std::size_t first,
                          std::size_t end) {
-    alignas(64) double in_state[HWY_MAX_BYTES / sizeof(double)];
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) in_state[k] = lanes.state[first + k] == state;
-    return hn::And(hn::Gt(hn::Load(d, in_state), hn::Zero(d)), hn::FirstN(d, end - first));
+    return hn::And(hn::Eq(states_of(lanes, first), hn::Set(d, static_cast<double>(state))),
+                   hn::FirstN(d, end - first));
+}
+
+bool any(const Lanes& lanes, Lanes::State state, std::size_t first, std::size_t end) {
+    const F d;
+    for (std::size_t k = first; k < end; k += hn::Lanes(d)) {
+        if (!hn::AllFalse(d, lanes_in(d, state, lanes, k, end))) return true;
+    }
+    return false;
+}
+
+void conclude(const Lanes& lanes, BundleIsolations& isolations) {
+    const F d;
+    const hn::RebindToSigned<F> di;
+    const hn::Rebind<std::uint8_t, F> bytes;
+    const auto set = [&](Status status)
+                         HWY_ATTR { return hn::Set(di, static_cast<std::int32_t>(status)); };
+    for (std::size_t k = 0; k < lanes.count; k += hn::Lanes(d)) {
+        const auto state = hn::LoadU(di, &lanes.state[k]);
+        const auto is_miss = hn::Eq(state, hn::Set(di, std::int32_t{Lanes::walking}));
+        const auto is_hit = hn::Eq(state, hn::Set(di, std::int32_t{Lanes::hit}));
+        const auto status =
+            hn::IfThenElse(is_miss, set(Status::miss),
+                           hn::IfThenElse(is_hit, set(Status::hit), set(Status::unresolved)));
+        hn::StoreU(hn::DemoteTo(bytes, status), bytes,
+                   reinterpret_cast<std::uint8_t*>(&isolations.status[k]));
+    }
 }
 
 // Directions, and what (2) of core/field/bundle.h adds to them in the window's middle.
@@ -198,8 +245,8 @@ struct RayLanes {
 
 HWY_INLINE RayLanes<D> rays_of(D d, const Window& window, double, const Lanes& lanes,
                                std::size_t first) {
-    const V<D> x = hn::LoadU(d, &lanes.dx[first]), y = hn::LoadU(d, &lanes.dy[first]),
-               z = hn::LoadU(d, &lanes.dz[first]), middle = hn::Set(d, window.middle);
+    const V<D> x = hn::LoadU(d, lanes.dx + first), y = hn::LoadU(d, lanes.dy + first),
+               z = hn::LoadU(d, lanes.dz + first), middle = hn::Set(d, window.middle);
     return {{x, y, z},
             {hn::Mul(middle, hn::Sub(x, hn::Set(d, window.axis.x))),
              hn::Mul(middle, hn::Sub(y, hn::Set(d, window.axis.y))),
@@ -224,9 +271,9 @@ HWY_INLINE RayLanes<F> rays_of(F d, const Window& window, double unit, const Lan
     const V<F> middle = hn::Set(d, static_cast<float>(window.middle / unit));
     return {{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
              hn::LoadU(d, &lanes.fz[first])},
-            {hn::Mul(middle, rounded_difference(&lanes.dx[first], window.axis.x)),
-             hn::Mul(middle, rounded_difference(&lanes.dy[first], window.axis.y)),
-             hn::Mul(middle, rounded_difference(&lanes.dz[first], window.axis.z))}};
+            {hn::Mul(middle, rounded_difference(lanes.dx + first, window.axis.x)),
+             hn::Mul(middle, rounded_difference(lanes.dy + first, window.axis.y)),
+             hn::Mul(middle, rounded_difference(lanes.dz + first, window.axis.z))}};
 }
 
 constexpr int most_steps = 48;
@@ -342,20 +389,44 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
         }
         undecided = hn::Or(undecided, hn::Or(walking, guessing));  // no end of steps
         if (hn::AllFalse(d, hn::Or(found, undecided)) && S::takes == Lanes::walking) continue;
+        const hn::RebindToSigned<Tag> di;
+        if constexpr (sizeof(Real) == sizeof(float)) {
+            const auto set = [&](Lanes::State state)
+                                 HWY_ATTR { return hn::Set(di, std::int32_t{state}); };
+            const auto state =
+                hn::IfThenElse(hn::RebindMask(di, undecided), set(S::leaves),
+                               hn::IfThenElse(hn::RebindMask(di, found), set(Lanes::candidate),
+                                              set(Lanes::walking)));
+            hn::BlendedStore(state, hn::RebindMask(di, taken), di, &lanes.state[first]);
+        } else {
+            const std::uint64_t taken_bits = bits_of(d, taken), found_bits = bits_of(d, found),
+                                undecided_bits = bits_of(d, undecided);
+            for (std::size_t k = 0; k < N; ++k) {
+                if ((taken_bits >> k & 1) == 0) continue;
+                const bool is_undecided = (undecided_bits >> k & 1) != 0;
+                lanes.state[first + k] = is_undecided                 ? S::leaves
+                                         : (found_bits >> k & 1) != 0 ? Lanes::candidate
+                                                                      : Lanes::walking;
+                if (is_undecided) {
+                    lanes.t_lo[first + k] = window.begin;
+                    lanes.t_hi[first + k] = infinity<double>;
+                }
+            }
+        }
+        // Candidates are those of this window: there are none from before.
         alignas(64) Real at[HWY_MAX_BYTES / sizeof(Real)];
         hn::Store(tau, d, at);
-        const std::uint64_t taken_bits = bits_of(d, taken), found_bits = bits_of(d, found),
-                            undecided_bits = bits_of(d, undecided);
-        for (std::size_t k = 0; k < N; ++k) {
-            if ((taken_bits >> k & 1) == 0) continue;
-            const bool is_candidate = (found_bits >> k & 1) != 0;
-            lanes.state[first + k] = (undecided_bits >> k & 1) != 0 ? S::leaves
-                                     : is_candidate                 ? Lanes::candidate
-                                                                    : Lanes::walking;
-            lanes.t_lo[first + k] = window.begin;
-            lanes.t_hi[first + k] = infinity<double>;
-            if (is_candidate)
-                lanes.guess[first + k] = window.middle + static_cast<double>(at[k]) * unit;
+        const D wide;
+        for (std::size_t k = 0; k < N && first + k < end_lane; k += hn::Lanes(wide)) {
+            V<D> place;
+            if constexpr (sizeof(Real) == sizeof(float)) {
+                place = hn::PromoteTo(wide, hn::Load(hn::Rebind<float, D>(), at + k));
+            } else {
+                place = hn::Load(wide, at + k);
+            }
+            const V<D> t = hn::MulAdd(place, hn::Set(wide, unit), hn::Set(wide, window.middle));
+            hn::BlendedStore(t, lanes_in(wide, Lanes::candidate, lanes, first + k, end_lane), wide,
+                             &lanes.t[first + k]);
         }
     }
     return steps;
@@ -381,13 +452,6 @@ std::uint64_t walk_again(const Window& window, double threshold, std::size_t fir
 }
 
 constexpr std::size_t widest = 8;  // doubles in a vector of any target
-
-// Indices of up to `widest` lanes, and their directions side by side.
-struct Batch {
-    alignas(64) double dx[widest], dy[widest], dz[widest], t[widest];
-    std::uint32_t lane[widest];
-    std::size_t count = 0;
-};
 
 // (2) of core/field/bundle.h.
 HWY_INLINE Vec3v<D> place(const Window& window, const Vec3v<D>& direction, V<D> t) {
@@ -441,91 +505,112 @@ double common_cell(double half_width) {
 // In a refined window g is another sum, and what rises before m - delta is that of the walk,
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
-std::uint64_t enclose_batch(const Window& window, double threshold, double half_width,
-                            double common, double left_out, Lanes::State pinned,
-                            Lanes::State otherwise, Batch& batch, Lanes& lanes) {
+struct Enclosed {
+    M<D> done;    // lo .. hi are the grid lines about the root
+    V<D> lo, hi;  // otherwise f < 0 up to lo, and, unless it is infinite, the root before hi
+    std::size_t steps;
+};
+
+struct Enclosing {
+    const Window& window;
+    double threshold, half_width;
+    double common_cell;  // see there
+    double left_out;
+};
+
+HWY_INLINE Enclosed enclose_lanes(const Enclosing& task, const Vec3v<D>& direction, V<D> m,
+                                  M<D> open) {
     const D d;
-    const std::size_t N = hn::Lanes(d);
+    const Window& window = task.window;
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
     const StageBounds& bounds = window.fine_bounds;
     const V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
     const V<D> zero = hn::Zero(d);
-    for (std::size_t k = batch.count; k < widest; ++k) {
-        batch.dx[k] = batch.dx[0];
-        batch.dy[k] = batch.dy[0];
-        batch.dz[k] = batch.dz[0];
-        batch.t[k] = batch.t[0];
+    const V<D> cell =
+        task.common_cell > 0 ? c(task.common_cell) : cell_of(d, task.half_width, direction);
+    const V<D> inverse_cell = hn::Div(c(1), cell);
+    std::size_t steps = 0;
+    V<D> lo = zero, hi = zero;
+    V<D> outside = c(window.begin);     // f < 0 up to there
+    V<D> inside = c(infinity<double>);  // and a root before this
+    M<D> done = hn::FirstN(d, 0);
+    for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
+        steps += hn::CountTrue(d, open);
+        const Vec3v<D> p = place(window, direction, m);
+        const FieldValue<D> value =
+            evaluate(d, window.fine, window.fine_count, task.threshold, p, direction);
+        const V<D> f_hi = hn::Add(value.f, c(bounds.above));
+        const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
+        const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
+        const V<D> inverse = hn::Div(c(1), value.slope);
+        const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
+        const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
+        const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
+        // Then size / slope_lo < delta, and f < -left_out at m - delta.
+        const M<D> firm = hn::And(
+            hn::And(hn::Gt(value.slope, zero), hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
+            hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
+                    hn::Le(hn::Add(m, delta), c(window.end))));
+        // The zeros of the outer lines, each with its steeper or flatter slope: with b = bend /
+        // slope < 1/2, 1 / (1 - b) <= 1 + b + 2 b^2 and 1 / (1 + b) >= 1 - b.
+        const V<D> b = hn::Mul(bend, inverse);
+        const V<D> flat = hn::Mul(hn::MulAdd(hn::MulAdd(c(2), b, c(1)), b, c(1)),
+                                  hn::Mul(inverse, c(1 + 0x1p-40)));
+        const V<D> steep = hn::Mul(hn::Sub(c(1), b), hn::Mul(inverse, c(1 - 0x1p-40)));
+        const V<D> first_x =
+            hn::Mul(hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), flat, steep));
+        const V<D> last_x = hn::Mul(hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), steep, flat));
+        const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
+        const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
+        const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
+        outside = hn::IfThenElse(hn::And(open, firm), from, outside);
+        inside = hn::IfThenElse(hn::And(open, firm), to, inside);
+        const V<D> line = hn::Mul(hn::Floor(hn::Mul(from, inverse_cell)), cell);
+        const V<D> next = hn::Add(line, cell);
+        const M<D> decided =
+            hn::And(hn::And(open, firm), hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
+                                                 // finer cells than 8 ulp are made by other means
+                                                 hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
+        lo = hn::IfThenElse(decided, line, lo);
+        hi = hn::IfThenElse(decided, next, hi);
+        done = hn::Or(done, decided);
+        // The next m lies within delta of this one, so that g still rises up to there.
+        open = hn::AndNot(decided, hn::And(open, firm));
+        m = hn::IfThenElse(open, hn::NegMulAdd(value.f, inverse, m), m);
     }
+    return {done, hn::IfThenElse(done, lo, outside), hn::IfThenElse(done, hi, inside), steps};
+}
+
+// Lanes that stand alone are gathered from here and there.
+struct Batch {
+    alignas(64) double dx[widest] = {}, dy[widest] = {}, dz[widest] = {}, t[widest] = {};
+    std::uint32_t lane[widest];
+    std::size_t count = 0;
+};
+
+std::uint64_t enclose_batch(const Enclosing& task, Lanes::State pinned, Lanes::State otherwise,
+                            Batch& batch, Lanes& lanes) {
+    const D d;
+    const std::size_t N = hn::Lanes(d);
     std::uint64_t steps = 0;
     for (std::size_t first = 0; first < batch.count; first += N) {
         const Vec3v<D> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first),
                                  hn::Load(d, batch.dz + first)};
-        const V<D> cell = common > 0 ? c(common) : cell_of(d, half_width, direction);
-        const V<D> inverse_cell = hn::Div(c(1), cell);
-        V<D> m = hn::Load(d, batch.t + first);
-        V<D> lo = zero, hi = zero;
-        V<D> outside = c(window.begin);     // f < 0 up to there
-        V<D> inside = c(infinity<double>);  // and a root before this
-        M<D> open = hn::FirstN(d, batch.count - first);
-        M<D> done = hn::FirstN(d, 0);
-        for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
-            steps += hn::CountTrue(d, open);
-            const Vec3v<D> p = place(window, direction, m);
-            const FieldValue<D> value =
-                evaluate(d, window.fine, window.fine_count, threshold, p, direction);
-            const V<D> f_hi = hn::Add(value.f, c(bounds.above));
-            const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
-            const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(left_out));
-            const V<D> inverse = hn::Div(c(1), value.slope);
-            const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
-            const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
-            const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
-            // Then size / slope_lo < delta, and f < -left_out at m - delta.
-            const M<D> firm = hn::And(
-                hn::And(hn::Gt(value.slope, zero), hn::Gt(slope_lo, hn::Mul(value.slope, c(0.5)))),
-                hn::And(hn::Ge(hn::Sub(m, delta), c(window.begin)),
-                        hn::Le(hn::Add(m, delta), c(window.end))));
-            // The zeros of the outer lines, each with its steeper or flatter slope: with b = bend /
-            // slope < 1/2, 1 / (1 - b) <= 1 + b + 2 b^2 and 1 / (1 + b) >= 1 - b.
-            const V<D> b = hn::Mul(bend, inverse);
-            const V<D> flat = hn::Mul(hn::MulAdd(hn::MulAdd(c(2), b, c(1)), b, c(1)),
-                                      hn::Mul(inverse, c(1 + 0x1p-40)));
-            const V<D> steep = hn::Mul(hn::Sub(c(1), b), hn::Mul(inverse, c(1 - 0x1p-40)));
-            const V<D> first_x =
-                hn::Mul(hn::Neg(f_hi), hn::IfThenElse(hn::Gt(f_hi, zero), flat, steep));
-            const V<D> last_x =
-                hn::Mul(hn::Neg(f_lo), hn::IfThenElse(hn::Gt(f_lo, zero), steep, flat));
-            const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
-            const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
-            const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
-            outside = hn::IfThenElse(hn::And(open, firm), from, outside);
-            inside = hn::IfThenElse(hn::And(open, firm), to, inside);
-            const V<D> line = hn::Mul(hn::Floor(hn::Mul(from, inverse_cell)), cell);
-            const V<D> next = hn::Add(line, cell);
-            const M<D> decided = hn::And(hn::And(open, firm),
-                                         hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
-                                                 // finer cells than 8 ulp are made by other means
-                                                 hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
-            lo = hn::IfThenElse(decided, line, lo);
-            hi = hn::IfThenElse(decided, next, hi);
-            done = hn::Or(done, decided);
-            // The next m lies within delta of this one, so that g still rises up to there.
-            open = hn::AndNot(decided, hn::And(open, firm));
-            m = hn::IfThenElse(open, hn::NegMulAdd(value.f, inverse, m), m);
-        }
-        alignas(64) double lo_out[widest], hi_out[widest];
-        hn::Store(hn::IfThenElse(done, lo, outside), d, lo_out);
-        hn::Store(hn::IfThenElse(done, hi, inside), d, hi_out);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, done, bits);
+        const Enclosed enclosed = enclose_lanes(task, direction, hn::Load(d, batch.t + first),
+                                                hn::FirstN(d, batch.count - first));
+        steps += enclosed.steps;
+        alignas(64) double lo[widest], hi[widest];
+        hn::Store(enclosed.lo, d, lo);
+        hn::Store(enclosed.hi, d, hi);
+        const std::uint64_t hits = bits_of(d, enclosed.done);
         for (std::size_t k = 0; k < N && first + k < batch.count; ++k) {
             const std::uint32_t lane = batch.lane[first + k];
-            const bool is_hit = (bits[k / 8] >> (k % 8) & 1) != 0;
-            lanes.state[lane] = is_hit                         ? Lanes::hit
-                                : hi_out[k] < infinity<double> ? pinned
-                                                               : otherwise;
-            lanes.t_lo[lane] = lo_out[k];
-            lanes.t_hi[lane] = hi_out[k];
+            lanes.state[lane] = (hits >> k & 1) != 0       ? Lanes::hit
+                                : hi[k] < infinity<double> ? pinned
+                                                           : otherwise;
+            lanes.t_lo[lane] = lo[k];
+            lanes.t_hi[lane] = hi[k];
+            lanes.t[lane] = 0.5 * (lo[k] + hi[k]);
         }
     }
     batch.count = 0;
@@ -535,31 +620,58 @@ std::uint64_t enclose_batch(const Window& window, double threshold, double half_
 std::uint64_t enclose(const Window& window, double threshold, double half_width, double left_out,
                       std::size_t first, std::size_t end, Lanes::State pinned,
                       Lanes::State otherwise, Lanes& lanes) {
-    Batch batch;
-    std::uint64_t steps = 0;
-    const double common = common_cell(half_width);
-    for (std::size_t k = first; k < end; ++k) {
-        if (lanes.state[k] != Lanes::candidate) continue;
-        if (!window.fine_usable) {
+    if (!window.fine_usable) {
+        for (std::size_t k = first; k < end; ++k) {
+            if (lanes.state[k] != Lanes::candidate) continue;
             lanes.state[k] = otherwise;
             lanes.t_lo[k] = window.begin;
             lanes.t_hi[k] = infinity<double>;
+        }
+        return 0;
+    }
+    const D d;
+    const hn::Rebind<std::int32_t, D> narrow;
+    const std::size_t N = hn::Lanes(d);
+    const auto set = [&](Lanes::State state)
+                         HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
+    const Enclosing task{window, threshold, half_width, common_cell(half_width), left_out};
+    Batch batch;
+    std::uint64_t steps = 0;
+    for (std::size_t k = first; k < end; k += N) {
+        const M<D> candidates = lanes_in(d, Lanes::candidate, lanes, k, end);
+        const std::size_t count = hn::CountTrue(d, candidates);
+        if (count == 0) continue;
+        if (2 * count <= N) {
+            const std::uint64_t bits = bits_of(d, candidates);
+            for (std::size_t i = 0; i < N; ++i) {
+                if ((bits >> i & 1) == 0) continue;
+                const std::size_t at = batch.count++;
+                batch.lane[at] = static_cast<std::uint32_t>(k + i);
+                batch.dx[at] = lanes.dx[k + i];
+                batch.dy[at] = lanes.dy[k + i];
+                batch.dz[at] = lanes.dz[k + i];
+                batch.t[at] = lanes.t[k + i];
+                if (batch.count < widest) continue;
+                steps += enclose_batch(task, pinned, otherwise, batch, lanes);
+            }
             continue;
         }
-        const std::size_t at = batch.count++;
-        batch.lane[at] = static_cast<std::uint32_t>(k);
-        batch.dx[at] = lanes.dx[k];
-        batch.dy[at] = lanes.dy[k];
-        batch.dz[at] = lanes.dz[k];
-        batch.t[at] = lanes.guess[k];
-        if (batch.count == widest) {
-            steps += enclose_batch(window, threshold, half_width, common, left_out, pinned,
-                                   otherwise, batch, lanes);
-        }
+        const Vec3v<D> direction{hn::LoadU(d, lanes.dx + k), hn::LoadU(d, lanes.dy + k),
+                                 hn::LoadU(d, lanes.dz + k)};
+        const Enclosed enclosed =
+            enclose_lanes(task, direction, hn::LoadU(d, &lanes.t[k]), candidates);
+        steps += enclosed.steps;
+        const M<D> is_pinned = hn::Lt(enclosed.hi, hn::Set(d, infinity<double>));
+        const V<D> state = hn::IfThenElse(enclosed.done, set(Lanes::hit),
+                                          hn::IfThenElse(is_pinned, set(pinned), set(otherwise)));
+        const V<D> states = hn::IfThenElse(candidates, state, states_of(lanes, k));
+        hn::StoreU(hn::DemoteTo(narrow, states), narrow, &lanes.state[k]);
+        hn::BlendedStore(enclosed.lo, candidates, d, lanes.t_lo + k);
+        hn::BlendedStore(enclosed.hi, candidates, d, lanes.t_hi + k);
+        hn::BlendedStore(hn::Mul(hn::Set(d, 0.5), hn::Add(enclosed.lo, enclosed.hi)), candidates, d,
+                         &lanes.t[k]);
     }
-    if (batch.count > 0)
-        steps += enclose_batch(window, threshold, half_width, common, left_out, pinned, otherwise,
-                               batch, lanes);
+    if (batch.count > 0) steps += enclose_batch(task, pinned, otherwise, batch, lanes);
     return steps;
 }
 
@@ -682,28 +794,35 @@ HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32
 
 // The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
 // they bound the errors of F and of |grad F|.
-void look(const Window& window, const Field& field, double unit, const Lanes& lanes,
-          std::size_t first_lane, std::size_t end_lane, const double* m, BundleSurfaces& surfaces) {
+Looked look(const Window& window, const Field& field, double unit, double limit, const Lanes& lanes,
+            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces) {
     const F d;
+    const D wide;
     const std::size_t N = hn::Lanes(d);
     const V<F> zero = hn::Zero(d);
     constexpr double firm_share = 0x1p9;
     const StageBounds& bounds = window.coarse_bounds;
+    const V<D> begin = hn::Set(wide, window.begin), middle = hn::Set(wide, window.middle),
+               end = hn::Set(wide, std::fmin(window.end, limit)),
+               per_unit = hn::Set(wide, 1 / unit),
+               nowhere = hn::Set(wide, std::numeric_limits<double>::quiet_NaN());
+    Looked looked;
     for (std::size_t first = first_lane; first < end_lane; first += N) {
-        alignas(64) float tau[HWY_MAX_BYTES / sizeof(float)];
-        alignas(64) float inside[HWY_MAX_BYTES / sizeof(float)];
-        bool any = false;
-        for (std::size_t k = 0; k < N; ++k) {
-            const bool in =
-                first + k < end_lane && m[first + k] >= window.begin && m[first + k] < window.end;
-            inside[k] = in ? 1.0F : 0.0F;
-            tau[k] = in ? static_cast<float>((m[first + k] - window.middle) / unit) : 0.0F;
-            any = any || in;
+        const M<F> hits = lanes_in(d, Lanes::hit, lanes, first, end_lane);
+        if (hn::AllFalse(d, hits)) continue;
+        alignas(64) double places[HWY_MAX_BYTES / sizeof(float)];
+        for (std::size_t k = 0; k < N; k += hn::Lanes(wide)) {
+            const V<D> t = hn::LoadU(wide, &lanes.t[first + k]);
+            const M<D> inside = hn::And(hn::Ge(t, begin), hn::Lt(t, end));
+            const V<D> tau = hn::Mul(hn::Sub(t, middle), per_unit);
+            hn::Store(hn::IfThenElse(inside, tau, nowhere), wide, places + k);
         }
-        if (!any) continue;
-        const M<F> wanted = hn::Gt(hn::Load(d, inside), zero);
+        const V<F> tau = rounded(places);
+        const M<F> wanted = hn::AndNot(hn::IsNaN(tau), hits);
+        if (hn::AllFalse(d, wanted)) continue;
+        looked.wanted += hn::CountTrue(d, wanted);
+        const V<F> t = hn::IfThenElseZero(wanted, tau);
         const RayLanes<F> rays = rays_of(d, window, unit, lanes, first);
-        const V<F> t = hn::Load(d, tau);
         const Vec3v<F> p{hn::MulAdd(t, rays.direction.x, rays.middle.x),
                          hn::MulAdd(t, rays.direction.y, rays.middle.y),
                          hn::MulAdd(t, rays.direction.z, rays.middle.z)};
@@ -730,6 +849,7 @@ void look(const Window& window, const Field& field, double unit, const Lanes& la
                      hn::Mul(sum.color.z, share)};
         }
         const M<F> known = hn::And(wanted, firm);
+        looked.known += hn::CountTrue(d, known);
         const auto put = [&](V<F> value, std::array<float, BundleSurfaces::room>& column)
                              HWY_ATTR { hn::BlendedStore(value, known, d, &column[first]); };
         put(hn::Mul(sum.gradient.x, inverse), surfaces.nx);
@@ -739,12 +859,14 @@ void look(const Window& window, const Field& field, double unit, const Lanes& la
         put(color.y, surfaces.g);
         put(color.z, surfaces.b);
     }
+    return looked;
 }
 
 }  // namespace
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{prepare, walk, walk_again, enclose, look, surface};
+    static const PacketSteps steps{prepare, any,  walk,    walk_again,
+                                   enclose, look, surface, conclude};
     return steps;
 }
 

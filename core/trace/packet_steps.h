@@ -11,19 +11,20 @@
 #include "core/field/field.h"
 #include "core/interval/interval.h"
 #include "core/math/vec3.h"
+#include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
+#include "core/trace/ray_bundle.h"
 
 namespace ivory {
 
-// One ray of a bundle and what is known of it, as structure of arrays.
+// The rays of a bundle and what is known of them, as structure of arrays.
 struct Lanes {
-    static constexpr std::size_t capacity = 256;
-    static constexpr std::size_t room = capacity + 16;  // the last vector is read whole
+    static constexpr std::size_t room = RayBundle::room;  // the last vector is read whole
 
     enum State : std::int32_t {
         walking,    // f < 0 on [0, t) so far
-        candidate,  // and, in this window, g rises from there to a root near `guess`
+        candidate,  // and, in this window, g rises from there to a root near t
         hit,        // done: t_lo, t_hi
         hidden,     // what the fine list leaves out hides on which side of a grid line the root is
         doubtful,   // float cannot decide on what happens in this window
@@ -33,16 +34,25 @@ struct Lanes {
     };
 
     std::size_t count = 0;
-    alignas(64) std::array<double, room> dx, dy, dz;  // directions
-    alignas(64) std::array<float, room> fx, fy, fz;   // the same, rounded
+    // Directions, and where the answers go: arrays with that room.
+    const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
+    double *t_lo = nullptr, *t_hi = nullptr;
+    alignas(64) std::array<float, room> fx, fy, fz;  // the directions, rounded
     alignas(64) std::array<std::int32_t, room> state;
-    alignas(64) std::array<double, room> guess;
-    alignas(64) std::array<double, capacity> t_lo, t_hi;
+    alignas(64) std::array<double, room> t;  // of a candidate; of a hit the midpoint
+};
+
+// How many lanes were to be looked at, and of how many the surface is known now.
+struct Looked {
+    std::size_t wanted = 0, known = 0;
 };
 
 struct PacketSteps {
-    // dx, dy, dz stand; fills the rest. State: walking.
+    // `count`, dx, dy, dz stand; fills fx, fy, fz. State: walking.
     void (*prepare)(Lanes& lanes);
+
+    // Whether any of the lanes first .. end is in that state.
+    bool (*any)(const Lanes& lanes, Lanes::State state, std::size_t first, std::size_t end);
 
     // Safe steps of every walking lane of first .. end from the window's begin to its end, in
     // float: lanes that come to a root become candidates, those that float cannot decide doubtful.
@@ -64,15 +74,19 @@ struct PacketSteps {
                              double left_out, std::size_t first, std::size_t end,
                              Lanes::State pinned, Lanes::State otherwise, Lanes& lanes);
 
-    // Normal and colour at m[k] of those lanes k of first .. end for which that lies in the window,
+    // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,
     // in float: within 2^-8, or nx = NaN where float might lose more.
-    void (*look)(const Window& window, const Field& field, double unit, const Lanes& lanes,
-                 std::size_t first, std::size_t end, const double* m, BundleSurfaces& surfaces);
+    Looked (*look)(const Window& window, const Field& field, double unit, double limit,
+                   const Lanes& lanes, std::size_t first, std::size_t end,
+                   BundleSurfaces& surfaces);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.
     void (*surface)(const Window& window, const Field& field, const Lanes& lanes,
                     std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface);
+
+    // Those that still walk are misses, the others hits or unresolved.
+    void (*conclude)(const Lanes& lanes, BundleIsolations& isolations);
 };
 
 // For this machine.

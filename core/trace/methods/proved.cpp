@@ -178,7 +178,11 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     const PacketTracer::Settings settings{
         options.tolerance, greatest_cell(field, options.tolerance), options.skipping};
     thread_local PacketTracer packets;
-    packets.isolate(field, list, rays, settings, isolations, surfaces, counts);
+    const std::size_t found =
+        packets.isolate(field, list, rays, settings, isolations, surfaces, counts);
+    const BundleTally tally = tally_of(isolations, rays.size());
+    const bool all_found = surfaces == nullptr || found == tally[Status::hit];
+    if (tally[Status::unresolved] == 0 && all_found) return;
     std::array<double, RayBundle::capacity> m;
     bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {

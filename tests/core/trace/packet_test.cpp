@@ -196,10 +196,16 @@ TEST(Packet, ATinySurfaceFarAwayOnTheAxisIsNotMissed) {
 // A slope whose square is beyond float makes the step infinite: that is no proof of anything.
 TEST(Packet, AStepThatOverflowsDecidesNothing) {
     const auto lanes = std::make_unique<Lanes>();
-    lanes->count = 1;
-    lanes->dx[0] = 1;
-    lanes->dy[0] = lanes->dz[0] = 0;
     const Vec3d axis{1, 0, 0};
+    const auto rays = std::make_unique<RayBundle>();
+    rays->add(axis);
+    BundleIsolations found;
+    lanes->count = 1;
+    lanes->dx = rays->dx.data();
+    lanes->dy = rays->dy.data();
+    lanes->dz = rays->dz.data();
+    lanes->t_lo = found.t_lo.data();
+    lanes->t_hi = found.t_hi.data();
     packet_steps().prepare(*lanes);
 
     Window window;
@@ -243,7 +249,7 @@ TEST(Packet, WorkIsBounded) {
     packets.isolate(field, all_elements(field), *rays, {1e-6, 0.5 * 0x1p-20 * field.least_width},
                     found, nullptr, counts);
     EXPECT_LT(counts.evaluations, 256u * 2 * 1024);
-    for (const Status status : found.status) EXPECT_NE(status, Status::miss);
+    for (std::size_t k = 0; k < rays->size(); ++k) EXPECT_NE(found.status[k], Status::miss);
 }
 
 // What a picture shows is what answers tell, but for float: normals within 2^-10 and colours within
