@@ -80,10 +80,14 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     refined_cut_ = fine_cut_ * refined_cut_share;
-    rest_above_ = std::max(list.rest.hi, 0.0) * scale_ * more;
-    rest_below_ = std::max(-list.rest.lo, 0.0) * scale_ * more;
-
-    list_.take(field, list.elements);
+    list_.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
+    list_.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
+    list_.in_clusters = !list.clusters.empty();
+    if (list_.in_clusters) {
+        list_.active.take(field.clusters.first_of_group, list.clusters);
+    } else {
+        list_.active.take(field.first, list.elements);
+    }
     return true;
 }
 
@@ -91,27 +95,28 @@ Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const
     return {origin_, part.axis, part.spread * more + 0x1p-49, t0, t1};
 }
 
-PeakSums BundleField::bound(const Stretch& on, double cut, const ActiveElements& candidates,
-                            double rest_above, double rest_below, Bounded& result) const {
-    const PeakSums peaks =
-        bundle_steps().bound(*field_, on, scale_, cut, candidates, result.active);
-    const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
-    result.rest_above = (rest_above + peaks.rest_above) * sums;
-    result.rest_below = (rest_below + peaks.rest_below) * sums;
+PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
+                            Bounded& result) {
+    const ActiveElements* candidates = &parent.active;
+    if (parent.in_clusters && !in_clusters) {
+        members_.take_members(field_->clusters, parent.active);
+        candidates = &members_;
+    }
+    result.in_clusters = parent.in_clusters && in_clusters;
+    const auto step = result.in_clusters ? bundle_steps().bound_clusters : bundle_steps().bound;
+    const PeakSums peaks = step(*field_, on, scale_, cut, *candidates, result.active);
+    const double sums = 1 + static_cast<double>(candidates->size() + 64) * 0x1p-52;
+    result.rest_above = (parent.rest_above + peaks.rest_above) * sums;
+    result.rest_below = (parent.rest_below + peaks.rest_below) * sums;
     return peaks;
 }
 
-bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1) {
+bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1,
+                        bool in_clusters) {
     if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
     Bounded& here = bounded_by_depth_[depth];
-    const Stretch on = stretch(part, t0, t1);
-    PeakSums peaks;
-    if (depth == 0) {
-        peaks = bound(on, fine_cut_, list_, rest_above_, rest_below_, here);
-    } else {
-        const Bounded& parent = bounded_by_depth_[depth - 1];
-        peaks = bound(on, fine_cut_, parent.active, parent.rest_above, parent.rest_below, here);
-    }
+    const Bounded& parent = depth == 0 ? list_ : bounded_by_depth_[depth - 1];
+    const PeakSums peaks = bound(stretch(part, t0, t1), fine_cut_, parent, in_clusters, here);
     const double slack =
         static_cast<double>(here.active.size() + 4) * 0x1p-52 * (peaks.magnitude + threshold_);
     ++stretches_;
@@ -206,7 +211,12 @@ void BundleField::complete(Window& w) {
 const Window& BundleField::refined() {
     if (is_refined_) return refined_;
     is_refined_ = true;
-    bound(finished_, refined_cut_, list_, rest_above_, rest_below_, refined_bounded_);
+    const Bounded* from = &list_;
+    if (list_.in_clusters) {
+        bound(finished_, refined_cut_, list_, true, near_clusters_);
+        from = &near_clusters_;
+    }
+    bound(finished_, refined_cut_, *from, false, refined_bounded_);
     bend(finished_, refined_bounded_);
     refined_.begin = window_.begin;
     refined_.middle = window_.middle;

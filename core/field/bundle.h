@@ -145,6 +145,7 @@ class BundleField {
 
     // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
+        bool in_clusters = false;  // `active` are clusters
         ActiveElements active;
         double rest_above = 0, rest_below = 0;
         double rise = 0, fall = 0;
@@ -153,10 +154,11 @@ class BundleField {
 
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     // False: f < 0 on all of [t0, t1] for every ray.
-    bool bound(std::size_t depth, const BundlePart& part, double t0, double t1);
-    // Of `candidates` those with |F| above `cut`; the others join what they could add.
-    PeakSums bound(const Stretch& on, double cut, const ActiveElements& candidates,
-                   double rest_above, double rest_below, Bounded& result) const;
+    bool bound(std::size_t depth, const BundlePart& part, double t0, double t1, bool in_clusters);
+    // Of the parent's those with |F| above `cut`; the others join what they could add. Clusters
+    // stay clusters if that is wanted.
+    PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
+                   Bounded& result);
     void bend(const Stretch& on, Bounded& bounded) const;
     void complete(const Stretch& on, const Bounded& bounded, Window& window) const;
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
@@ -176,10 +178,10 @@ class BundleField {
             visit(window_, parts_[0]);
             return false;
         }
-        if (!bound(depth, part, t0 - pad, t1 + pad)) return true;
         const double middle = 0.5 * (t0 + t1);
         const bool divisible = middle > t0 && middle < t1 && depth < greatest_depth;
         const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
+        if (!bound(depth, part, t0 - pad, t1 + pad, is_long)) return true;
         if (!is_long) bend(stretch(part, t0 - pad, t1 + pad), bounded_by_depth_[depth]);
         if (is_long || (divisible && splits(depth, t0, t1))) {
             return descend(depth + 1, part, t0, middle, wanted, visit) &&
@@ -198,7 +200,9 @@ class BundleField {
     const Field* field_ = nullptr;
     Vec3d origin_;
     std::span<const BundlePart> parts_;
-    ActiveElements list_;
+    Bounded list_;
+    ActiveElements members_;  // of clusters
+    Bounded near_clusters_;
     std::vector<Bounded> bounded_by_depth_;
     std::size_t finished_depth_ = 0;
     Stretch finished_;  // of the window
@@ -209,7 +213,6 @@ class BundleField {
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double coarse_cut_ = 0, fine_cut_ = 0, refined_cut_ = 0;
-    double rest_above_ = 0, rest_below_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;

@@ -295,6 +295,67 @@ PeakSums bound(const Field& field, const Stretch& stretch, double scale, double 
     return sums;
 }
 
+template <KernelKind kind>
+void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, double scale, double cut,
+                         const ActiveElements& candidates, std::size_t first, std::size_t end,
+                         ActiveElements& kept, std::size_t& count, PeakSums& sums) {
+    const D d;
+    const I di;
+    const std::size_t N = hn::Lanes(d);
+    const V<D> zero = hn::Zero(d);
+    V<D> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
+    for (std::size_t i = first; i < end; i += N) {
+        const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
+        const M<D> valid = hn::FirstN(d, end - i);
+        const auto column = [&](const std::vector<double>& values)
+                                HWY_ATTR { return hn::GatherIndex(d, values.data(), index); };
+        const Vec3v<D> v{hn::Sub(column(clusters.x), constant(stretch.origin.x)),
+                         hn::Sub(column(clusters.y), constant(stretch.origin.y)),
+                         hn::Sub(column(clusters.z), constant(stretch.origin.z))};
+        const V<D> radius = column(clusters.radius);
+        const V<D> far =
+            hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), radius)),
+                    constant(more));
+        const V<D> last = hn::Max(constant(stretch.begin), hn::Min(constant(stretch.end), far));
+        const V<D> off = hn::MulAdd(last, constant(stretch.spread * more), error_of(far, stretch));
+        const V<D> nearest = FromAxis(v, stretch.axis).nearest(stretch.begin, stretch.end);
+        const V<D> near = at_least_0(hn::Sub(nearest, hn::Add(off, radius)));
+        const V<D> least =
+            hn::Mul(hn::Mul(square_of(near), column(clusters.inverse_square)), constant(less));
+        const V<D> peak = hn::Mul(peak_of<kind>(least), constant(scale * more));
+        const V<D> adds = hn::Mul(column(clusters.above), peak);
+        const V<D> takes = hn::Mul(column(clusters.below), peak);
+        const V<D> value = hn::Add(adds, takes);
+        const M<D> keep = hn::AndNot(hn::Le(value, constant(cut)), valid);
+        const M<D> leave = hn::AndNot(keep, valid);
+        rest_above = hn::Add(rest_above, hn::IfThenElseZero(leave, adds));
+        rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
+        magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, value));
+        above = hn::Add(above, hn::IfThenElseZero(keep, adds));
+        count += hn::CompressStore(index, hn::RebindMask(di, keep), di, &kept.element[count]);
+    }
+    sums.above += sum_of(above);
+    sums.magnitude += sum_of(magnitude);
+    sums.rest_above += sum_of(rest_above);
+    sums.rest_below += sum_of(rest_below);
+}
+
+PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale, double cut,
+                        const ActiveElements& candidates, ActiveElements& kept) {
+    kept.make_room(candidates.size());
+    PeakSums sums;
+    std::size_t count = 0;
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        kept.first[group] = static_cast<std::uint32_t>(count);
+        const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
+        if (first == end) return;
+        bound_cluster_group<kind>(field.clusters, stretch, scale, cut, candidates, first, end, kept,
+                                  count, sums);
+    });
+    kept.end(count);
+    return sums;
+}
+
 // rise: an upper bound of w^2 (k'' s'^2 + k' s'') for all rays on the stretch; fall: of its
 // negative.
 struct Bend {
@@ -648,7 +709,7 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
 }  // namespace
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound, bend, coarse, fine};
+    static const BundleSteps steps{bound, bound_clusters, bend, coarse, fine};
     return steps;
 }
 
@@ -663,15 +724,30 @@ HWY_EXPORT(bundle_steps_of_target);
 
 const BundleSteps& bundle_steps() { return HWY_DYNAMIC_DISPATCH(bundle_steps_of_target)(); }
 
-void ActiveElements::take(const Field& field, std::span<const std::uint32_t> elements) {
+void ActiveElements::take(const std::array<std::uint32_t, field_groups + 1>& groups,
+                          std::span<const std::uint32_t> elements) {
     make_room(elements.size());
     std::copy(elements.begin(), elements.end(), element.begin());
     for (std::size_t group = 0; group < field_groups; ++group) {
         first[group] = static_cast<std::uint32_t>(
-            std::lower_bound(elements.begin(), elements.end(), field.first[group]) -
-            elements.begin());
+            std::lower_bound(elements.begin(), elements.end(), groups[group]) - elements.begin());
     }
     end(elements.size());
+}
+
+void ActiveElements::take_members(const Clusters& clusters, const ActiveElements& of) {
+    make_room(of.size() * cluster_size);
+    std::size_t count = 0;
+    for (std::size_t group = 0; group < field_groups; ++group) {
+        first[group] = static_cast<std::uint32_t>(count);
+        for (std::size_t i = of.first[group]; i < of.first[group + 1]; ++i) {
+            const auto cluster = static_cast<std::size_t>(of.element[i]);
+            for (std::uint32_t e = clusters.first[cluster]; e < clusters.first[cluster + 1]; ++e) {
+                element[count++] = e;
+            }
+        }
+    }
+    end(count);
 }
 
 void ActiveElements::make_room(std::size_t count) {

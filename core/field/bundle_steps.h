@@ -40,8 +40,12 @@ struct ActiveElements {
     static constexpr std::size_t room = 16;
 
     [[nodiscard]] std::size_t size() const { return first[field_groups]; }
-    // A sorted list, of which nothing more is known.
-    void take(const Field& field, std::span<const std::uint32_t> elements);
+    // A sorted list, of which nothing more is known; `groups`: where they begin, as in
+    // Field::first.
+    void take(const std::array<std::uint32_t, field_groups + 1>& groups,
+              std::span<const std::uint32_t> elements);
+    // The members of clusters.
+    void take_members(const Clusters& clusters, const ActiveElements& of);
     // Keeps nothing.
     void make_room(std::size_t count);
     // All groups are there: so many elements.
@@ -72,6 +76,10 @@ struct BundleSteps {
     // Of the `candidates` those with |F| possibly above `cut` (of strengths times `scale`).
     PeakSums (*bound)(const Field& field, const Stretch& stretch, double scale, double cut,
                       const ActiveElements& candidates, ActiveElements& kept);
+
+    // The same of clusters: indices into Field::clusters, of which nothing but `element` is set.
+    PeakSums (*bound_clusters)(const Field& field, const Stretch& stretch, double scale, double cut,
+                               const ActiveElements& candidates, ActiveElements& kept);
 
     // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
     BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,

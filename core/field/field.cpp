@@ -71,13 +71,19 @@ void add(Field& field, const Element& element, std::size_t source) {
 Field compile(const Scene& scene) {
     Field field;
     field.threshold = scene.threshold;
+    std::array<std::vector<std::uint32_t>, field_groups> groups;
+    std::size_t visible = 0;
+    for (std::size_t i = 0; i < scene.elements.size(); ++i) {
+        const Element& element = scene.elements[i];
+        if (!element.visible) continue;
+        const auto shape = static_cast<Shape>(element.skeleton.index());
+        groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
+        ++visible;
+    }
     for (std::size_t group = 0; group < field_groups; ++group) {
         field.first[group] = static_cast<std::uint32_t>(field.size());
-        for (std::size_t i = 0; i < scene.elements.size(); ++i) {
-            const Element& element = scene.elements[i];
-            const auto shape = static_cast<Shape>(element.skeleton.index());
-            if (element.visible && group_of(shape, element.kernel) == group) add(field, element, i);
-        }
+        if (visible >= least_clustered) sort_by_place(scene, groups[group]);
+        for (const std::uint32_t i : groups[group]) add(field, scene.elements[i], i);
     }
     field.first[field_groups] = static_cast<std::uint32_t>(field.size());
     recolor(field, scene);
@@ -95,6 +101,7 @@ Field compile(const Scene& scene) {
     field.greatest_width =
         field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
     field.compact = is_compact(field);
+    field.clusters = clusters_of(field);
     for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
     field.reach_box = box_of_reach(field);
     field.box = shrunk_box(field, field.reach_box);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/field/clusters.h"
 #include "core/math/box3.h"
 #include "core/math/vec3.h"
 #include "core/scene/scene.h"
@@ -23,8 +24,9 @@ inline constexpr std::size_t field_groups = 9;
     return static_cast<std::size_t>(shape) * 3 + static_cast<std::size_t>(kernel);
 }
 
-// Visible elements only, sorted by group, in file order within a group.
-// The doubles are those of the scene, unchanged: every proof is about them.
+// Visible elements only, sorted by group; within a group in file order, but where there are
+// clusters by their places (core/field/clusters.h). The doubles are those of the scene, unchanged:
+// every proof is about them.
 struct Field {
     double threshold = 0;    // T
     double least_width = 0;  // the least w_i; 1 where there is no element
@@ -57,6 +59,8 @@ struct Field {
     std::vector<double> inverse_square;   // 1 / w^2
     std::vector<float> red, green, blue;  // `color`, for what is only looked at
     bool one_color = true;                // all elements have the same
+
+    Clusters clusters;
 
     // Around all skeletons.
     Box3 skeletons;

@@ -17,43 +17,105 @@ ElementList all_elements(const Field& field) {
     return list;
 }
 
+ElementList all_clusters(const Field& field) {
+    if (field.clusters.empty()) return all_elements(field);
+    ElementList list;
+    list.clusters.resize(field.clusters.size());
+    std::iota(list.clusters.begin(), list.clusters.end(), 0u);
+    list.certainly_empty = field.box.empty();
+    return list;
+}
+
 // Two unit vectors an angle a <= 30 degrees apart have ends 2 sin(a / 2) apart, at most 1.036 sin
 // a. The axis' own rounding to length 1 is far below the rest of the margin.
 double spread_of(const Cone& cone) { return cone.sine <= 0.45 ? 1.04 * cone.sine + 0x1p-48 : 1; }
 
+namespace {
+
+// The bounds of core/field/bundle.h hold on the cone.
+bool is_bounded(const Field& field, const Cone& cone) {
+    const Vec3d& o = cone.apex;
+    return field.compact && spread_of(cone) <= 0.5 &&
+           std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
+}
+
 // What the rays are parametrized by does not matter to distances; beyond its far end an element
 // only gets farther away.
-ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone,
-                              const Interval<double>& part) {
-    const Vec3d& o = cone.apex;
-    const bool bounded = field.compact && spread_of(cone) <= 0.5 &&
-                         std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
-    if (parent.certainly_empty || parent.elements.empty() || !bounded) return parent;
-
-    thread_local ActiveElements candidates, kept;
-    candidates.take(field, parent.elements);
+Stretch all_of(const Field& field, const Cone& cone, const Interval<double>& part) {
     double far = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        far += std::max(std::abs(field.skeletons.lo[k] - o[k]),
-                        std::abs(field.skeletons.hi[k] - o[k]));
+        far += std::max(std::abs(field.skeletons.lo[k] - cone.apex[k]),
+                        std::abs(field.skeletons.hi[k] - cone.apex[k]));
     }
-    const Stretch rays{o, unit(cone.axis), spread_of(cone), part.lo,
-                       std::max(part.lo, std::min(part.hi, far * (1 + 0x1p-46)))};
-    // Each element is dropped once, whatever the number of lists between: all together stay below
-    // 2^-52 T.
-    const double share = field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));
-    const PeakSums peaks = bundle_steps().bound(field, rays, 1, share, candidates, kept);
+    return {cone.apex, unit(cone.axis), spread_of(cone), part.lo,
+            std::max(part.lo, std::min(part.hi, far * (1 + 0x1p-46)))};
+}
 
+// Each element is dropped once, alone or with its cluster, whatever the number of lists between:
+// all together stay below 2^-52 T.
+double share_of(const Field& field) {
+    return field.threshold * 0x1p-52 / (1 + static_cast<double>(field.size()));
+}
+
+// What is kept of `candidates`, without the indices.
+ElementList list_of(const Field& field, const ElementList& parent, std::size_t candidates,
+                    const PeakSums& peaks) {
     ElementList list;
-    const double sums = 1 + static_cast<double>(candidates.size() + 64) * 0x1p-52;
+    const double sums = 1 + static_cast<double>(candidates + 64) * 0x1p-52;
     list.rest = parent.rest + Interval<double>(-peaks.rest_below * sums, peaks.rest_above * sums);
     const double slack =
-        static_cast<double>(candidates.size() + 4) * 0x1p-52 * (peaks.magnitude + field.threshold);
+        static_cast<double>(candidates + 4) * 0x1p-52 * (peaks.magnitude + field.threshold);
     list.certainly_empty = peaks.above + list.rest.hi + slack < field.threshold;
-    if (list.certainly_empty) return list;
-    list.elements.assign(kept.element.begin(),
-                         kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
     return list;
+}
+
+void give(const ActiveElements& kept, std::vector<std::uint32_t>& indices) {
+    indices.assign(kept.element.begin(),
+                   kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
+}
+
+}  // namespace
+
+ElementList reaching_elements(const Field& field, const ElementList& parent, const Cone& cone,
+                              const Interval<double>& part) {
+    if (parent.certainly_empty || parent.size() == 0) return parent;
+    thread_local ActiveElements clusters, near_clusters, candidates, kept;
+    ElementList from_clusters = parent;  // what the clusters left out is out
+    if (!parent.clusters.empty()) {
+        clusters.take(field.clusters.first_of_group, parent.clusters);
+        if (is_bounded(field, cone)) {
+            const PeakSums peaks = bundle_steps().bound_clusters(
+                field, all_of(field, cone, part), 1, share_of(field), clusters, near_clusters);
+            from_clusters = list_of(field, parent, clusters.size(), peaks);
+            if (from_clusters.certainly_empty) return from_clusters;
+            candidates.take_members(field.clusters, near_clusters);
+        } else {
+            from_clusters.clusters.clear();
+            candidates.take_members(field.clusters, clusters);
+            give(candidates, from_clusters.elements);
+        }
+    } else {
+        candidates.take(field.first, parent.elements);
+    }
+    if (!is_bounded(field, cone)) return from_clusters;
+    const PeakSums peaks = bundle_steps().bound(field, all_of(field, cone, part), 1,
+                                                share_of(field), candidates, kept);
+    ElementList list = list_of(field, from_clusters, candidates.size(), peaks);
+    if (!list.certainly_empty) give(kept, list.elements);
+    return list;
+}
+
+ElementList reaching_clusters(const Field& field, const ElementList& parent, const Cone& cone) {
+    if (parent.clusters.empty()) return reaching_elements(field, parent, cone);
+    if (parent.certainly_empty || !is_bounded(field, cone)) return parent;
+    thread_local ActiveElements candidates, kept;
+    candidates.take(field.clusters.first_of_group, parent.clusters);
+    const PeakSums peaks = bundle_steps().bound_clusters(
+        field, all_of(field, cone, {0.0, infinity<double>}), 1, share_of(field), candidates, kept);
+    ElementList list = list_of(field, parent, candidates.size(), peaks);
+    if (list.certainly_empty) return list;
+    give(kept, list.clusters);
+    return list.most_elements() < least_clustered ? reaching_elements(field, parent, cone) : list;
 }
 
 }  // namespace ivory

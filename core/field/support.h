@@ -14,11 +14,18 @@ namespace ivory {
 
 // A sorted list of elements that stands for the whole field on some set of rays:
 // sum over the list + [rest.lo, rest.hi] encloses the sum of all F_i at every point of these rays,
-// unless the list is certainly empty.
+// unless the list is certainly empty. A list of many elements may name clusters of them instead.
 struct ElementList {
     std::vector<std::uint32_t> elements;  // indices into Field, ascending
+    std::vector<std::uint32_t> clusters;  // likewise, into Field::clusters; then no elements
     Interval<double> rest{0.0, 0.0};
     bool certainly_empty = false;  // f < 0 on all these rays: every one is a miss, none needs more
+
+    // No fewer elements than there are on the list, and how many indices.
+    [[nodiscard]] std::size_t most_elements() const {
+        return elements.size() + clusters.size() * cluster_size;
+    }
+    [[nodiscard]] std::size_t size() const { return elements.size() + clusters.size(); }
 };
 
 // All rays from `apex` whose direction makes an angle of at most asin(sine) with `axis`.
@@ -34,13 +41,21 @@ struct Cone {
 
 [[nodiscard]] ElementList all_elements(const Field& field);
 
-// The elements of `parent` that matter on the cone's rays; the others move into `rest`.
-// `parent` has to be valid on these rays. The result depends on the arguments alone; it is `parent`
-// itself where the cone is too wide for bounds, or the field not compact. Of rays with directions of
-// length 1 within 2^-50 also on the part with t in `part` alone; then `certainly_empty` is about
-// that part.
-[[nodiscard]] ElementList reaching_elements(
-    const Field& field, const ElementList& parent, const Cone& cone,
-    const Interval<double>& part = {0.0, infinity<double>});
+// The same as clusters, where the field has any.
+[[nodiscard]] ElementList all_clusters(const Field& field);
+
+// The elements of `parent` that matter on the cone's rays, none of them as clusters; the others
+// move into `rest`. `parent` has to be valid on these rays. The result depends on the arguments
+// alone; it has all elements of `parent` where the cone is too wide for bounds, or the field not
+// compact. Of rays with directions of length 1 within 2^-50 also on the part with t in `part`
+// alone; then `certainly_empty` is about that part.
+[[nodiscard]] ElementList reaching_elements(const Field& field, const ElementList& parent,
+                                            const Cone& cone,
+                                            const Interval<double>& part = {0.0, infinity<double>});
+
+// The same for a list of clusters: those that matter, if they are many; else, and of any other
+// list, the elements.
+[[nodiscard]] ElementList reaching_clusters(const Field& field, const ElementList& parent,
+                                            const Cone& cone);
 
 }  // namespace ivory

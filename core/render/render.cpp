@@ -93,6 +93,7 @@ class FrameJob::Work {
           canvas_(canvas),
           settings_(std::move(settings)),
           all_(all_elements(*picture_.field)),
+          all_clusters_(picture_.options.skipping.lists ? all_clusters(*picture_.field) : all_),
           region_lists_(canvas.grid.regions.size()),
           region_done_(canvas.grid.regions.size()),
           block_lists_(canvas.grid.blocks.size()),
@@ -244,7 +245,7 @@ class FrameJob::Work {
     bool take(std::size_t step, Tally& tally) {
         if (step < region_order_.size()) {
             const std::size_t region = region_order_[step];
-            region_lists_[region] = narrowed(all_, regions().rect(region), tally);
+            region_lists_[region] = narrowed(all_clusters_, regions().rect(region), tally);
             region_done_[region].store(1, std::memory_order_release);
             return true;
         }
@@ -269,10 +270,10 @@ class FrameJob::Work {
     ElementList narrowed(const ElementList& parent, const PixelRect& rect, Tally& tally) const {
         if (parent.certainly_empty || !picture_.options.skipping.lists) return parent;
         const Frame& frame = canvas_.frame;
-        ElementList list = reaching_elements(
+        ElementList list = reaching_clusters(
             *picture_.field, parent, cone_around(picture_.view, frame.width, frame.height, rect));
-        tally.counts.skipping.list_elements += parent.elements.size();
-        tally.counts.skipping.list_left_out += parent.elements.size() - list.elements.size();
+        tally.counts.skipping.list_elements += parent.size();
+        tally.counts.skipping.list_left_out += parent.size() - list.size();
         return list;
     }
 
@@ -339,7 +340,7 @@ class FrameJob::Work {
             }
             ++tally.tiles;
             if (!tile.list.certainly_empty) {
-                for (const std::uint32_t element : tile.list.elements) tally.reached[element] = 1;
+                mark_reached(tile.list, tally);
             }
         }
         bool done = true, same = false;
@@ -435,7 +436,7 @@ class FrameJob::Work {
         rays.part_count = 0;
         rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
         const bool in_parts =
-            with_parts && canvas_.tiles[index].list.elements.size() >= BundleField::parts_elements;
+            with_parts && canvas_.tiles[index].list.most_elements() >= BundleField::parts_elements;
         if (in_parts) {
             rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
             rays.parts[0].first_part = 1;
@@ -551,14 +552,26 @@ class FrameJob::Work {
 
     // Whether an element with another colour than before is in the list.
     bool reached_by_recolored(const ElementList& list) const {
-        const std::vector<std::uint32_t>& recolored = settings_.recolored;
-        auto element = list.elements.begin();
-        for (const std::uint32_t other : recolored) {
-            element = std::lower_bound(element, list.elements.end(), other);
-            if (element == list.elements.end()) return false;
-            if (*element == other) return true;
+        const bool in_clusters = !list.clusters.empty();
+        const std::vector<std::uint32_t>& indices = in_clusters ? list.clusters : list.elements;
+        auto from = indices.begin();
+        for (const std::uint32_t element : settings_.recolored) {
+            const std::uint32_t wanted =
+                in_clusters ? picture_.field->clusters.of(element) : element;
+            from = std::lower_bound(from, indices.end(), wanted);
+            if (from == indices.end()) return false;
+            if (*from == wanted) return true;
         }
         return false;
+    }
+
+    void mark_reached(const ElementList& list, Tally& tally) const {
+        for (const std::uint32_t element : list.elements) tally.reached[element] = 1;
+        const std::vector<std::uint32_t>& first = picture_.field->clusters.first;
+        for (const std::uint32_t cluster : list.clusters) {
+            std::fill_n(&tally.reached[first[cluster]], first[cluster + 1] - first[cluster],
+                        std::uint8_t{1});
+        }
     }
 
     // Colours, lights and background anew, from the t that stand in the frame.
@@ -603,7 +616,7 @@ class FrameJob::Work {
     Canvas& canvas_;
     const JobSettings settings_;
     std::vector<int> strides_;  // pass by pass
-    const ElementList all_;
+    const ElementList all_, all_clusters_;
 
     std::vector<std::size_t> region_order_, block_order_;
     std::size_t steps_ = 0;

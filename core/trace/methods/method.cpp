@@ -23,6 +23,10 @@ SurfacePoint Method::surface(const Field& field, const ElementList& list, const 
 void Method::trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                           const MethodOptions& options, BundleIsolations& isolations,
                           BundleSurfaces* surfaces, Counts& counts) const {
+    if (!list.clusters.empty()) {
+        const ElementList elements = elements_for(rays, field, list);
+        return Method::trace_bundle(field, elements, rays, options, isolations, surfaces, counts);
+    }
     if (surfaces != nullptr) surfaces->clear(rays.size());
     for (std::size_t k = 0; k < rays.size(); ++k) {
         const Isolation isolation = isolate(field, list, rays.ray(k), options, counts);
@@ -35,9 +39,18 @@ void Method::trace_bundle(const Field& field, const ElementList& list, const Ray
 void Method::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
                             BundleSurfaces& surfaces) const {
+    if (!list.clusters.empty()) {
+        return Method::surface_bundle(field, elements_for(rays, field, list), rays, options, m,
+                                      surfaces);
+    }
     for (std::size_t k = 0; k < rays.size(); ++k) {
         if (std::isfinite(m[k])) surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
     }
+}
+
+ElementList elements_for(const RayBundle& rays, const Field& field, const ElementList& list) {
+    return reaching_elements(field, list,
+                             {rays.bundle.origin, rays.bundle.axis, rays.bundle.spread});
 }
 
 Vec3d outward_normal(const Vec3d& gradient) {

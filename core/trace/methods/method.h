@@ -41,8 +41,9 @@ class Method {
                                                const Ray& ray, double m,
                                                const MethodOptions& options) const;
 
-    // The same for all rays of a bundle, for which `list` has to be valid: one isolation for each,
-    // and, unless `surfaces` is null, the surface at the midpoints of those that may be hits.
+    // The same for all rays of a bundle, for which `list` has to be valid, and may name clusters
+    // (it may not for one ray): one isolation for each, and, unless `surfaces` is null, the surface
+    // at the midpoints of those that may be hits.
     virtual void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                               const MethodOptions& options, BundleIsolations& isolations,
                               BundleSurfaces* surfaces, Counts& counts) const;
@@ -55,6 +56,10 @@ class Method {
   protected:
     Method() = default;
 };
+
+// Those on the list that matter to the bundle's rays: for methods that trace them one by one.
+[[nodiscard]] ElementList elements_for(const RayBundle& rays, const Field& field,
+                                       const ElementList& list);
 
 // -gradient / |gradient|; 0, 0, 0 for a gradient that is 0 or not finite.
 [[nodiscard]] Vec3d outward_normal(const Vec3d& gradient);

@@ -183,13 +183,16 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     const BundleTally tally = tally_of(isolations, rays.size());
     const bool all_found = surfaces == nullptr || found == tally[Status::hit];
     if (tally[Status::unresolved] == 0 && all_found) return;
+    const ElementList elements =
+        list.clusters.empty() ? ElementList{} : elements_for(rays, field, list);
+    const ElementList& for_one = list.clusters.empty() ? list : elements;
     std::array<double, RayBundle::capacity> m;
     bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
         if (isolations.status[k] == Status::unresolved) {
             ++counts.skipping.rays_alone;
-            isolations.set(k, isolate_from({isolations.t_lo[k], isolations.t_hi[k]}, field, list,
+            isolations.set(k, isolate_from({isolations.t_lo[k], isolations.t_hi[k]}, field, for_one,
                                            rays.ray(k), options, counts));
         }
         if (surfaces == nullptr || isolations.status[k] == Status::miss || surfaces->found(k)) {
@@ -206,11 +209,16 @@ void Proved::surface_bundle(const Field& field, const ElementList& list, const R
                             BundleSurfaces& surfaces) const {
     thread_local PacketTracer packets;
     packets.surface(field, list, rays, options.tolerance, m, surfaces);
+    // What the packets leave to one ray at a time.
+    std::array<double, RayBundle::capacity> left;
+    bool any = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        // What the packets leave to one ray at a time.
-        if (std::isfinite(m[k]) && !surfaces.found(k)) {
-            surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
-        }
+        const bool is_left = std::isfinite(m[k]) && !surfaces.found(k);
+        left[k] = is_left ? m[k] : infinity<double>;
+        any = any || is_left;
+    }
+    if (any) {
+        Method::surface_bundle(field, list, rays, options, {left.data(), rays.size()}, surfaces);
     }
 }
 

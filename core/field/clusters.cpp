@@ -1,0 +1,113 @@
+#include "core/field/clusters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/field/field.h"
+#include "core/math/box3.h"
+#include "core/scene/scene.h"
+
+namespace ivory {
+namespace {
+
+// Far more than the roundings of a sum or a length here.
+constexpr double more = 1 + 0x1p-40;
+
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+Vec3d place_of(const Element& element) {
+    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) return point->position;
+    if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+        return 0.5 * segment->a + 0.5 * segment->b;
+    }
+    return std::get<CircleSkeleton>(element.skeleton).center;
+}
+
+// 10 bits, two zeros between each and the next.
+std::uint32_t spread_bits(std::uint32_t x) {
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
+}
+
+// The middle of an element's skeleton, and how far it reaches from there.
+std::pair<Vec3d, double> ball_of(const Field& field, std::size_t i) {
+    const Vec3d a = field.a(i);
+    if (field.shape[i] == Shape::segment) {
+        const Vec3d middle = 0.5 * a + 0.5 * field.b(i);
+        return {middle, std::max(length(a - middle), length(field.b(i) - middle)) * more};
+    }
+    return {a, field.radius[i]};
+}
+
+}  // namespace
+
+std::uint32_t Clusters::of(std::uint32_t element) const {
+    return static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), element) -
+                                      first.begin() - 1);
+}
+
+Clusters clusters_of(const Field& field) {
+    Clusters clusters;
+    if (!field.compact || field.size() < least_clustered) return clusters;
+    for (std::size_t group = 0; group < field_groups; ++group) {
+        clusters.first_of_group[group] = static_cast<std::uint32_t>(clusters.size());
+        for (std::size_t first = field.first[group]; first < field.first[group + 1];
+             first += cluster_size) {
+            const std::size_t end =
+                std::min<std::size_t>(first + cluster_size, field.first[group + 1]);
+            Box3 box;
+            double above = 0, below = 0, widest = 0;
+            for (std::size_t i = first; i < end; ++i) {
+                const Vec3d middle = ball_of(field, i).first;
+                box.include({middle, middle});
+                (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+                widest = std::max(widest, field.width[i]);
+            }
+            const Vec3d center = 0.5 * box.lo + 0.5 * box.hi;
+            double radius = 0;
+            for (std::size_t i = first; i < end; ++i) {
+                const auto [middle, reach] = ball_of(field, i);
+                radius = std::max(radius, (length(middle - center) + reach) * more);
+            }
+            clusters.first.push_back(static_cast<std::uint32_t>(first));
+            clusters.x.push_back(center.x);
+            clusters.y.push_back(center.y);
+            clusters.z.push_back(center.z);
+            clusters.radius.push_back(radius);
+            clusters.above.push_back(above * more);
+            clusters.below.push_back(below * more);
+            clusters.inverse_square.push_back(1 / (widest * widest) * (1 - 0x1p-40));
+        }
+    }
+    clusters.first.push_back(static_cast<std::uint32_t>(field.size()));
+    clusters.first_of_group[field_groups] = static_cast<std::uint32_t>(clusters.size());
+    return clusters;
+}
+
+void sort_by_place(const Scene& scene, std::vector<std::uint32_t>& elements) {
+    Box3 box;
+    for (const std::uint32_t i : elements) {
+        const Vec3d place = place_of(scene.elements[i]);
+        box.include({place, place});
+    }
+    const auto cell = [&](double x, std::size_t axis) {
+        const double share = (x - box.lo[axis]) / (box.hi[axis] - box.lo[axis]);
+        // Not a number, or beyond them, where the box is empty or too large.
+        return share > 0 && share <= 1 ? static_cast<std::uint32_t>(share * 1023) : 0;
+    };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> keys;
+    keys.reserve(elements.size());
+    for (const std::uint32_t i : elements) {
+        const Vec3d place = place_of(scene.elements[i]);
+        keys.emplace_back(spread_bits(cell(place.x, 0)) | spread_bits(cell(place.y, 1)) << 1 |
+                              spread_bits(cell(place.z, 2)) << 2,
+                          i);
+    }
+    std::sort(keys.begin(), keys.end());
+    for (std::size_t k = 0; k < keys.size(); ++k) elements[k] = keys[k].second;
+}
+
+}  // namespace ivory

@@ -1,0 +1,45 @@
+// A hierarchy of one level over the elements: neighbours of one group stand side by side in the
+// field, and up to `cluster_size` of them are bounded together. Of 100,000 elements the lists of
+// regions, blocks and tiles then look at clusters, and only a window at elements.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ivory {
+
+struct Field;
+struct Scene;
+
+inline constexpr std::size_t cluster_size = 16;
+
+// Fields of fewer elements have no clusters, and lists of fewer name each by itself: to look at
+// each of them costs less than the wider bounds of clusters do.
+inline constexpr std::size_t least_clustered = 2048;
+
+// As a structure of arrays, sorted by group. At every point p with distance d from the ball, the
+// elements' F_i(p) add up to no more than above k(d^2 inverse_square), and to no less than
+// -below k(d^2 inverse_square).
+struct Clusters {
+    std::vector<std::uint32_t> first;                // element of each; one more: the field's size
+    std::array<std::uint32_t, 10> first_of_group{};  // of field_groups; the last: size()
+    std::vector<double> x, y, z, radius;             // of a ball that holds the skeletons
+    std::vector<double> above, below;                // sums of the b_i > 0 and of the -b_i > 0
+    std::vector<double> inverse_square;              // 1 / w^2 of the widest
+
+    [[nodiscard]] std::size_t size() const { return x.size(); }
+    [[nodiscard]] bool empty() const { return x.empty(); }
+    // The cluster that holds an element.
+    [[nodiscard]] std::uint32_t of(std::uint32_t element) const;
+};
+
+// Those of a compact field with that many elements; of others none.
+[[nodiscard]] Clusters clusters_of(const Field& field);
+
+// Indices of elements of the scene, put in the order of their places along a curve through space
+// (Morton 1966): those that follow each other are near each other. Equal places keep their order.
+void sort_by_place(const Scene& scene, std::vector<std::uint32_t>& elements);
+
+}  // namespace ivory
