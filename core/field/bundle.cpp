@@ -20,6 +20,12 @@ constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
 // this share of T; but not below this share of the least width.
 constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 
+// Short stretches are bounded in float unless widths, or widths and skeletons, differ by more: then
+// what rounding takes from a distance, some 2^-14 units, might be more than the thinnest element
+// has.
+constexpr double most_in_float = 0x1p9;
+constexpr double longest_in_float = 100;  // units
+
 // A window is made for each part of the rays where they are farther apart than this share of its
 // length.
 constexpr double parts_apart = 1;
@@ -77,6 +83,8 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     std::frexp(field.greatest_width, &exponent);
     unit_ = std::ldexp(1.0, exponent - 1);
     least_width_ = field.least_width;
+    bounds_in_float_ = field.greatest_width < most_in_float * field.least_width &&
+                       field.greatest_size < most_in_float * field.greatest_width;
     coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     refined_cut_ = fine_cut_ * refined_cut_share;
@@ -93,6 +101,21 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
 
 Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const {
     return {origin_, part.axis, part.spread * more + 0x1p-49, t0, t1};
+}
+
+// (2) of bundle.h: the part's axis at t is middle (part's axis - axis) + (t - middle) part's axis
+// away from M.
+NearStretch BundleField::near_stretch(const BundlePart& part, double middle, double t0,
+                                      double t1) const {
+    const Vec3d& axis = parts_[0].axis;
+    const double per_unit = 1 / unit_;
+    return {part.axis,
+            {middle * (part.axis.x - axis.x) * per_unit, middle * (part.axis.y - axis.y) * per_unit,
+             middle * (part.axis.z - axis.z) * per_unit},
+            part.spread * more + 0x1p-49,
+            (t0 - middle) * per_unit,
+            (t1 - middle) * per_unit,
+            middle * per_unit};
 }
 
 PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
@@ -116,15 +139,45 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
     if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
     Bounded& here = bounded_by_depth_[depth];
     const Bounded& parent = depth == 0 ? list_ : bounded_by_depth_[depth - 1];
-    const PeakSums peaks = bound(stretch(part, t0, t1), fine_cut_, parent, in_clusters, here);
-    const double slack =
-        static_cast<double>(here.active.size() + 4) * 0x1p-52 * (peaks.magnitude + threshold_);
+    PeakSums peaks;
+    double u = 0x1p-52;  // of the sums
+    here.is_near = parent.is_near;
+    if (parent.is_near) {
+        u = 0x1p-22;
+        here.near_middle = parent.near_middle;
+        peaks = bundle_steps().bound_near(
+            parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
+        const double sums = 1 + static_cast<double>(parent.near.size() + 64) * u;
+        here.rest_above = (parent.rest_above + peaks.rest_above * sums) * (1 + 0x1p-50);
+        here.rest_below = (parent.rest_below + peaks.rest_below * sums) * (1 + 0x1p-50);
+    } else {
+        const Stretch on = stretch(part, t0, t1);
+        peaks = bound(on, fine_cut_, parent, in_clusters, here);
+        if (bounds_in_float_ && !here.in_clusters && t1 - t0 < longest_in_float * unit_) {
+            here.is_near = true;
+            here.near_middle = 0.5 * (t0 + t1);
+            bundle_steps().enter_near(*field_, on, here.near_middle, scale_, unit_, here.active,
+                                      here.near);
+        }
+    }
+    const double slack = static_cast<double>(here.size() + 4) * u * (peaks.magnitude + threshold_);
     ++stretches_;
     if (skips_windows_ && peaks.above + here.rest_above + slack < threshold_) {
         ++stretches_ended_;
         return false;
     }
     return true;
+}
+
+void BundleField::bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const {
+    if (!bounded.is_near) return bend(stretch(part, t0, t1), bounded);
+    const BendSums bends =
+        bundle_steps().bend_near(bounded.near, near_stretch(part, bounded.near_middle, t0, t1));
+    const double sums = 1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22;
+    const double per_unit = 1 / unit_;
+    bounded.rise = bends.rise * sums * (per_unit * per_unit);
+    bounded.fall = bends.fall * sums * (per_unit * per_unit);
+    bounded.kinks = bends.kinks * sums * per_unit;
 }
 
 void BundleField::bend(const Stretch& on, Bounded& bounded) const {
@@ -145,7 +198,7 @@ bool BundleField::splits(std::size_t depth, double t0, double t1) const {
 bool BundleField::parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                double t1) const {
     return part.first_part != part.end_of_parts &&
-           bounded_by_depth_[depth].active.size() >= parts_elements &&
+           bounded_by_depth_[depth].size() >= parts_elements &&
            t1 * part.spread > parts_apart * (t1 - t0);
 }
 
@@ -172,7 +225,8 @@ StageBounds stage_bounds(const StageSums& stage, double u, std::size_t entries, 
 
 void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, double t1) {
     Window& w = window_;
-    const Bounded& here = bounded_by_depth_[depth];
+    Bounded& here = bounded_by_depth_[depth];
+    if (here.is_near) here.active.take(here.near, unit_);
     finished_depth_ = depth;
     finished_ = stretch(part, t0, t1);
     w.begin = t0;

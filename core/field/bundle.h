@@ -146,19 +146,27 @@ class BundleField {
     // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
         bool in_clusters = false;  // `active` are clusters
+        bool is_near = false;      // the elements are in `near`; `active` only has those of windows
         ActiveElements active;
+        NearElements near;
+        double near_middle = 0;  // the t on the bundle's axis that `near` is relative to
         double rest_above = 0, rest_below = 0;
         double rise = 0, fall = 0;
         double kinks = 0;  // upper bound of the |f'| of kinked elements
+
+        [[nodiscard]] std::size_t size() const { return is_near ? near.size() : active.size(); }
     };
 
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
+    [[nodiscard]] NearStretch near_stretch(const BundlePart& part, double middle, double t0,
+                                           double t1) const;
     // False: f < 0 on all of [t0, t1] for every ray.
     bool bound(std::size_t depth, const BundlePart& part, double t0, double t1, bool in_clusters);
     // Of the parent's those with |F| above `cut`; the others join what they could add. Clusters
     // stay clusters if that is wanted.
     PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
                    Bounded& result);
+    void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     void bend(const Stretch& on, Bounded& bounded) const;
     void complete(const Stretch& on, const Bounded& bounded, Window& window) const;
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
@@ -182,7 +190,7 @@ class BundleField {
         const bool divisible = middle > t0 && middle < t1 && depth < greatest_depth;
         const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
         if (!bound(depth, part, t0 - pad, t1 + pad, is_long)) return true;
-        if (!is_long) bend(stretch(part, t0 - pad, t1 + pad), bounded_by_depth_[depth]);
+        if (!is_long) bend(part, t0 - pad, t1 + pad, bounded_by_depth_[depth]);
         if (is_long || (divisible && splits(depth, t0, t1))) {
             return descend(depth + 1, part, t0, middle, wanted, visit) &&
                    descend(depth + 1, part, middle, t1, wanted, visit);
@@ -215,6 +223,7 @@ class BundleField {
     double coarse_cut_ = 0, fine_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
+    bool bounds_in_float_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;
 };
 

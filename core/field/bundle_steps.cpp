@@ -18,9 +18,28 @@ namespace HWY_NAMESPACE {
 namespace {
 
 using I = hn::RebindToSigned<D>;
+using F = hn::ScalableTag<float>;
 
-constexpr double margin = 0x1p-46;
-constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
+// What makes up for rounding, relative to the magnitudes that went in: 2^7 units of it.
+template <class Real>
+struct Margins;
+
+template <>
+struct Margins<double> {
+    static constexpr double margin = 0x1p-46, more = 1 + 0x1p-46, less = 1 - 0x1p-46;
+    static constexpr double least_peak = 1e-300;  // what underflows
+    static constexpr double near_end = 0x1p-49;   // of a kernel that ends at 1
+};
+
+template <>
+struct Margins<float> {
+    static constexpr float margin = 0x1p-17f, more = 1 + 0x1p-17f, less = 1 - 0x1p-17f;
+    static constexpr float least_peak = 1e-36f;
+    static constexpr float near_end = 0x1p-20f;
+};
+
+constexpr double margin = Margins<double>::margin;
+constexpr double more = Margins<double>::more, less = Margins<double>::less;
 
 // The s'' of a circle is bounded where r / rho stays below this; else the element counts as kinked.
 constexpr double greatest_outward = 32;
@@ -28,174 +47,283 @@ constexpr double greatest_outward = 32;
 // sup of x e^-x^2 and of x^3 e^-x^2 for x >= 0 are 0.4289 and 0.4099.
 constexpr double unit_slope = 0.43;
 
+template <class Tag>
+HWY_INLINE V<Tag> constant(Tag d, double value) {
+    return hn::Set(d, static_cast<hn::TFromD<Tag>>(value));
+}
 HWY_INLINE V<D> constant(double value) { return hn::Set(D(), value); }
-HWY_INLINE V<D> square_of(V<D> x) { return hn::Mul(x, x); }
-HWY_INLINE V<D> length_of(const Vec3v<D>& v) { return hn::Sqrt(dot<D>(v, v)); }
-HWY_INLINE V<D> at_least_0(V<D> x) { return hn::Max(x, hn::Zero(D())); }
+template <class Vector>
+HWY_INLINE Vector square_of(Vector x) {
+    return hn::Mul(x, x);
+}
+template <class Tag>
+HWY_INLINE V<Tag> length_of(Tag, const Vec3v<Tag>& v) {
+    return hn::Sqrt(dot<Tag>(v, v));
+}
+template <class Vector>
+HWY_INLINE Vector at_least_0(Vector x) {
+    return hn::Max(x, hn::Zero(hn::DFromV<Vector>()));
+}
 
 // Upper bounds of k and |k'| from a lower bound of s. The factored forms lose relative accuracy
 // only in 1 - q of Nishimura's kernel, for which the absolute terms are.
-template <KernelKind kind>
-HWY_INLINE V<D> peak_of(V<D> s) {
-    const D d;
-    // rounded down, the product with s as well
-    constexpr double scale = argument_scale<kind> * (1 - 0x1p-50);
-    const V<D> k = kernel<kind>(d, kind == KernelKind::blinn ? hn::Mul(s, constant(scale)) : s).k;
-    if constexpr (kind == KernelKind::blinn) return hn::MulAdd(k, constant(more), constant(1e-300));
-    return hn::IfThenElseZero(hn::Lt(s, constant(1)),
-                              hn::MulAdd(k, constant(more), constant(0x1p-49)));
+template <KernelKind kind, class Tag>
+HWY_INLINE V<Tag> peak_of(Tag d, V<Tag> s) {
+    using Real = hn::TFromD<Tag>;
+    using Margin = Margins<Real>;
+    const V<Tag> widened = hn::Set(d, Margin::more);
+    if constexpr (kind == KernelKind::blinn) {
+        // rounded down, the product with s as well
+        constexpr double scale =
+            argument_scale<kind> * (sizeof(Real) == 4 ? 1 - 0x1p-21 : 1 - 0x1p-50);
+        const V<Tag> k = exp2_minus(d, hn::Mul(s, constant(d, scale)));
+        return hn::MulAdd(k, widened, hn::Set(d, Margin::least_peak));
+    }
+    const V<Tag> k = kernel<kind>(d, s).k;
+    return hn::IfThenElseZero(hn::Lt(s, constant(d, 1)),
+                              hn::MulAdd(k, widened, hn::Set(d, Margin::near_end)));
 }
 
-template <KernelKind kind>
-HWY_INLINE V<D> steepest(V<D> s) {
-    const D d;
-    const V<D> dk = hn::Neg(kernel<kind>(d, s).dk);
-    return hn::IfThenElseZero(hn::Lt(s, constant(1)),
-                              hn::MulAdd(dk, constant(more), constant(0x1p-46)));
+template <KernelKind kind, class Tag>
+HWY_INLINE V<Tag> steepest(Tag d, V<Tag> s) {
+    using Margin = Margins<hn::TFromD<Tag>>;
+    const V<Tag> dk = hn::Neg(kernel<kind>(d, s).dk);
+    return hn::IfThenElseZero(hn::Lt(s, constant(d, 1)),
+                              hn::MulAdd(dk, hn::Set(d, Margin::more), hn::Set(d, Margin::margin)));
 }
 
 // An upper bound of w / (2 |b|) |F'| = x |k'| <= sqrt(s) |k'| where s >= least: for Blinn's, with
 // s = least + y, e^-s sqrt(s) <= e^-least (sqrt(least) + sup sqrt(y) e^-y); for the other two the
 // greatest value of sqrt(s) |k'| is 1 and 0.79.
-template <KernelKind kind>
-HWY_INLINE V<D> slope_of(V<D> least, V<D> peak) {
+template <KernelKind kind, class Tag>
+HWY_INLINE V<Tag> slope_of(Tag d, V<Tag> least, V<Tag> peak) {
     if constexpr (kind != KernelKind::blinn) {
-        return hn::IfThenElseZero(hn::Lt(least, constant(1)), constant(1));
+        return hn::IfThenElseZero(hn::Lt(least, constant(d, 1)), constant(d, 1));
     }
-    const V<D> falling = hn::Mul(peak, hn::Add(hn::Sqrt(least), constant(unit_slope)));
-    return hn::Mul(hn::Min(constant(unit_slope), falling), constant(more));
+    const V<Tag> falling = hn::Mul(peak, hn::Add(hn::Sqrt(least), constant(d, unit_slope)));
+    return hn::Mul(hn::Min(constant(d, unit_slope), falling),
+                   hn::Set(d, Margins<hn::TFromD<Tag>>::more));
 }
 
 // (1) of bundle.h: a lower bound of the distance between two places at most L apart from lower
 // bounds of those there, with which it rises. Errors have to be taken off before: near 0 the result
 // follows their square roots.
-HWY_INLINE V<D> least_between(V<D> d0, V<D> d1, double L) {
-    const double square = L * L;
-    const V<D> square0 = square_of(d0), square1 = square_of(d1), squareL = constant(square);
-    const V<D> half = hn::Mul(constant(0.5), hn::Sub(hn::Add(squareL, square0), square1));
-    const V<D> vertex = hn::NegMulAdd(hn::Mul(half, half), constant(1 / square), square0);
-    const auto within = hn::And(hn::Gt(half, hn::Zero(D())), hn::Lt(half, squareL));
-    V<D> least = hn::IfThenElse(within, vertex, hn::Min(square0, square1));
-    least = hn::NegMulAdd(hn::Add(hn::Add(square0, square1), squareL), constant(margin), least);
-    return hn::Mul(hn::Sqrt(at_least_0(least)), constant(less));
+template <class Tag>
+HWY_INLINE V<Tag> least_between(Tag d, V<Tag> d0, V<Tag> d1, hn::TFromD<Tag> L) {
+    using Margin = Margins<hn::TFromD<Tag>>;
+    const hn::TFromD<Tag> square = L * L;
+    const V<Tag> square0 = square_of(d0), square1 = square_of(d1), squareL = hn::Set(d, square);
+    const V<Tag> half = hn::Mul(constant(d, 0.5), hn::Sub(hn::Add(squareL, square0), square1));
+    const V<Tag> vertex = hn::NegMulAdd(hn::Mul(half, half), hn::Set(d, 1 / square), square0);
+    const auto within = hn::And(hn::Gt(half, hn::Zero(d)), hn::Lt(half, squareL));
+    V<Tag> least = hn::IfThenElse(within, vertex, hn::Min(square0, square1));
+    least = hn::NegMulAdd(hn::Add(hn::Add(square0, square1), squareL), hn::Set(d, Margin::margin),
+                          least);
+    return hn::Mul(hn::Sqrt(at_least_0(least)), hn::Set(d, Margin::less));
 }
 
-// Some elements of a group, seen from the stretch's origin.
-template <Shape shape>
-struct Seen {
-    Vec3v<D> v;           // from the origin to the point, the segment's end a, the centre
-    Vec3v<D> m;           // segment: b - a; circle: unit normal
-    V<D> extra;           // segment: 1 / |m|^2; circle: radius
-    V<D> size;            // of the skeleton: no point of it is farther from c
-    V<D> far;             // at least as far from the origin as any point of the skeleton
-    V<D> strength;        // scaled
-    V<D> inverse_square;  // 1 / w^2
+// A stretch as the lanes see it: the points base + tau axis, begin <= tau <= end, and what is at
+// most `spread` times t = tau + t_offset away from them. Places are relative to the bundle's origin
+// in double, to the middle of some stretch in float.
+template <class Real>
+struct Reach {
+    Vec3<Real> axis, base;
+    Real begin, end, spread;
+    Real t_offset;
+    Real magnitude;  // of all numbers here but t_offset: what rounding is relative to
+};
 
-    Seen(const Field& field, const Stretch& stretch, double scale, hn::Vec<I> index) {
+HWY_INLINE Reach<double> reach_of(const Stretch& s) {
+    return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
+}
+
+HWY_INLINE Reach<float> reach_of(const NearStretch& s) {
+    const auto narrow = [](const Vec3d& v) {
+        return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y),
+                           static_cast<float>(v.z)};
+    };
+    const double magnitude = std::fmax(std::abs(s.begin), std::abs(s.end)) + std::abs(s.base.x) +
+                             std::abs(s.base.y) + std::abs(s.base.z);
+    return {narrow(s.axis),
+            narrow(s.base),
+            static_cast<float>(s.begin),
+            static_cast<float>(s.end),
+            static_cast<float>(s.spread * (1 + 0x1p-22)),
+            static_cast<float>(s.t_offset * (1 + 0x1p-22)),
+            static_cast<float>(magnitude * (1 + 0x1p-22))};
+}
+
+// Some elements of a group, seen from where their places are relative to.
+template <class Tag, Shape shape>
+struct Seen {
+    using Real = hn::TFromD<Tag>;
+    Vec3v<Tag> v;           // to the point, the segment's end a, the centre
+    Vec3v<Tag> m;           // segment: b - a; circle: unit normal
+    V<Tag> extra;           // segment: 1 / |m|^2; circle: radius
+    V<Tag> size;            // of the skeleton: no point of it is farther from c
+    V<Tag> magnitude;       // at least |v| + size
+    V<Tag> strength;        // scaled
+    V<Tag> inverse_square;  // 1 / w^2
+
+    Seen(const Field& field, const Stretch& stretch, double scale,
+         hn::Vec<I> index) requires(sizeof(Real) == sizeof(double)) {
         const D d;
         const auto column = [&](const std::vector<double>& values)
                                 HWY_ATTR { return hn::GatherIndex(d, values.data(), index); };
         v = {hn::Sub(column(field.ax), constant(stretch.origin.x)),
              hn::Sub(column(field.ay), constant(stretch.origin.y)),
              hn::Sub(column(field.az), constant(stretch.origin.z))};
-        far = hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)), constant(more));
         if constexpr (shape != Shape::point) {
             m = {column(field.mx), column(field.my), column(field.mz)};
             extra = column(field.extra);
             size = shape == Shape::segment ? column(field.length) : extra;
-            far = hn::MulAdd(size, constant(more), far);
-        } else {
-            m = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-            extra = size = hn::Zero(d);
         }
         strength = hn::Mul(column(field.strength), constant(scale));
         inverse_square = column(field.inverse_square);
+        finish();
+    }
+
+    Seen(const NearElements& near, const Reach<float>& reach,
+         std::size_t i) requires(sizeof(Real) == sizeof(float)) {
+        const F d;
+        const auto column = [&](const std::vector<float>& values)
+                                HWY_ATTR { return hn::LoadU(d, &values[i]); };
+        v = {hn::Sub(column(near.x), hn::Set(d, reach.base.x)),
+             hn::Sub(column(near.y), hn::Set(d, reach.base.y)),
+             hn::Sub(column(near.z), hn::Set(d, reach.base.z))};
+        if constexpr (shape != Shape::point) {
+            m = {column(near.mx), column(near.my), column(near.mz)};
+            extra = column(near.extra);
+            size = shape == Shape::segment ? column(near.length) : extra;
+        }
+        strength = column(near.strength);
+        inverse_square = column(near.inverse_square);
+        finish();
     }
 
     // The distance of the axis' point at t from the skeleton.
-    HWY_INLINE V<D> distance(const Vec3d& axis, double t) const {
-        const Vec3v<D> from{hn::Sub(constant(t * axis.x), v.x), hn::Sub(constant(t * axis.y), v.y),
-                            hn::Sub(constant(t * axis.z), v.z)};
-        const V<D> along = dot<D>(from, m);
-        const Vec3v<D> foot_of = across(from, m, shape == Shape::segment ? foot(along) : along);
-        if constexpr (shape == Shape::segment) return length_of(foot_of);
-        const V<D> off = hn::Sub(length_of(foot_of), extra);
+    HWY_INLINE V<Tag> distance(const Vec3<Real>& axis, Real t) const {
+        const Tag d;
+        const Vec3v<Tag> from = from_axis(axis, t);
+        const V<Tag> along = dot<Tag>(from, m);
+        const Vec3v<Tag> foot_of = across(from, m, shape == Shape::segment ? foot(along) : along);
+        if constexpr (shape == Shape::segment) return length_of(d, foot_of);
+        const V<Tag> off = hn::Sub(length_of(d, foot_of), extra);
         return hn::Sqrt(hn::MulAdd(off, off, square_of(along)));
     }
 
     // And that from a circle's axis.
-    HWY_INLINE V<D> rho(const Vec3d& axis, double t) const {
-        const Vec3v<D> from{hn::Sub(constant(t * axis.x), v.x), hn::Sub(constant(t * axis.y), v.y),
-                            hn::Sub(constant(t * axis.z), v.z)};
-        return length_of(across(from, m, dot<D>(from, m)));
+    HWY_INLINE V<Tag> rho(const Vec3<Real>& axis, Real t) const {
+        const Vec3v<Tag> from = from_axis(axis, t);
+        return length_of(Tag(), across(from, m, dot<Tag>(from, m)));
     }
 
   private:
-    HWY_INLINE V<D> foot(V<D> along) const {
-        return hn::Min(at_least_0(hn::Mul(along, extra)), constant(1));
+    HWY_INLINE void finish() {
+        const Tag d;
+        if constexpr (shape == Shape::point) {
+            m = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+            extra = size = hn::Zero(d);
+        }
+        magnitude =
+            hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), size)),
+                    hn::Set(d, Margins<Real>::more));
     }
-    static HWY_INLINE Vec3v<D> across(const Vec3v<D>& a, const Vec3v<D>& m, V<D> share) {
+    HWY_INLINE Vec3v<Tag> from_axis(const Vec3<Real>& axis, Real t) const {
+        const Tag d;
+        return {hn::Sub(hn::Set(d, t * axis.x), v.x), hn::Sub(hn::Set(d, t * axis.y), v.y),
+                hn::Sub(hn::Set(d, t * axis.z), v.z)};
+    }
+    HWY_INLINE V<Tag> foot(V<Tag> along) const {
+        return hn::Min(at_least_0(hn::Mul(along, extra)), constant(Tag(), 1));
+    }
+    static HWY_INLINE Vec3v<Tag> across(const Vec3v<Tag>& a, const Vec3v<Tag>& m, V<Tag> share) {
         return {hn::NegMulAdd(share, m.x, a.x), hn::NegMulAdd(share, m.y, a.y),
                 hn::NegMulAdd(share, m.z, a.z)};
     }
 };
 
 // A point against the bundle's axis.
+template <class Tag>
 struct FromAxis {
-    V<D> along, across_square;
+    using Real = hn::TFromD<Tag>;
+    V<Tag> along, across_square;
 
-    HWY_INLINE FromAxis(const Vec3v<D>& v, const Vec3d& axis) {
-        const Vec3v<D> a{constant(axis.x), constant(axis.y), constant(axis.z)};
-        along = dot<D>(v, a);
-        const Vec3v<D> across{hn::NegMulAdd(along, a.x, v.x), hn::NegMulAdd(along, a.y, v.y),
-                              hn::NegMulAdd(along, a.z, v.z)};
-        across_square = dot<D>(across, across);
+    HWY_INLINE FromAxis(const Vec3v<Tag>& v, const Vec3<Real>& axis) {
+        const Tag d;
+        const Vec3v<Tag> a{hn::Set(d, axis.x), hn::Set(d, axis.y), hn::Set(d, axis.z)};
+        along = dot<Tag>(v, a);
+        const Vec3v<Tag> across{hn::NegMulAdd(along, a.x, v.x), hn::NegMulAdd(along, a.y, v.y),
+                                hn::NegMulAdd(along, a.z, v.z)};
+        across_square = dot<Tag>(across, across);
     }
 
     // Its least distance from the axis' points of a stretch.
-    HWY_INLINE V<D> nearest(double begin, double end) const {
-        const V<D> before = hn::Sub(constant(begin), along), after = hn::Sub(along, constant(end));
+    HWY_INLINE V<Tag> nearest(Real begin, Real end) const {
+        const Tag d;
+        const V<Tag> before = hn::Sub(hn::Set(d, begin), along),
+                     after = hn::Sub(along, hn::Set(d, end));
         return hn::Sqrt(hn::Add(across_square, square_of(at_least_0(hn::Max(before, after)))));
     }
 };
 
+template <class Tag>
 struct DistanceRange {
-    V<D> near;
-    V<D> far;  // not of points: nobody asks
+    V<Tag> near;
+    V<Tag> far;  // not of points: nobody asks
 };
 
-// A lower and an upper bound of the distances between the skeletons and the stretch's points. These
-// are at most t spread away from the axis'; beyond t = far each ray only gets farther from every
-// point of the skeleton, so that what holds up to there holds on. On a long stretch a ball around
-// the skeleton, or a segment's whole line, says more than (1).
-template <Shape shape>
-HWY_INLINE DistanceRange distances(const Seen<shape>& e, const Stretch& s, V<D> error) {
-    const V<D> last = hn::Max(constant(s.begin), hn::Min(constant(s.end), e.far));
-    const V<D> aside = hn::Mul(last, constant(s.spread * more));
-    const V<D> off = hn::Add(aside, error);
+// What rounding does to distances, where numbers are no larger than that.
+template <class Tag>
+HWY_INLINE V<Tag> error_of(Tag d, V<Tag> magnitude, const Reach<hn::TFromD<Tag>>& reach) {
+    return hn::Mul(hn::Add(magnitude, hn::Set(d, reach.magnitude)),
+                   hn::Set(d, Margins<hn::TFromD<Tag>>::margin));
+}
+
+// At most so far from the axis' points are the rays', up to t = far: beyond, each ray only gets
+// farther from every point of the skeleton, so that what holds up to there holds on.
+template <class Tag>
+HWY_INLINE V<Tag> aside_of(Tag d, V<Tag> magnitude, const Reach<hn::TFromD<Tag>>& s) {
+    const V<Tag> offset = hn::Set(d, s.t_offset);
+    const V<Tag> last =
+        hn::Max(hn::Set(d, s.t_offset + s.begin),
+                hn::Min(hn::Set(d, s.t_offset + s.end), hn::Add(offset, magnitude)));
+    return hn::Mul(last, hn::Set(d, s.spread * Margins<hn::TFromD<Tag>>::more));
+}
+
+// A lower and an upper bound of the distances between the skeletons and the stretch's points. On a
+// long stretch a ball around the skeleton, or a segment's whole line, says more than (1).
+template <class Tag, Shape shape>
+HWY_INLINE DistanceRange<Tag> distances(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                        V<Tag> error) {
+    const Tag d;
+    using Real = hn::TFromD<Tag>;
+    constexpr Real widened = Margins<Real>::more;
+    const V<Tag> aside = aside_of(d, e.magnitude, s);
+    const V<Tag> off = hn::Add(aside, error);
     if constexpr (shape == Shape::point) {
-        const FromAxis c(e.v, s.axis);
-        return {at_least_0(hn::Sub(c.nearest(s.begin, s.end), off)), hn::Zero(D())};
+        const FromAxis<Tag> c(e.v, s.axis);
+        return {at_least_0(hn::Sub(c.nearest(s.begin, s.end), off)), hn::Zero(d)};
     } else {
-        const double L = (s.end - s.begin) * more;
-        const V<D> d0 = e.distance(s.axis, s.begin), d1 = e.distance(s.axis, s.end);
-        V<D> near =
-            least_between(at_least_0(hn::Sub(d0, error)), at_least_0(hn::Sub(d1, error)), L);
+        const Real L = (s.end - s.begin) * widened;
+        const V<Tag> d0 = e.distance(s.axis, s.begin), d1 = e.distance(s.axis, s.end);
+        V<Tag> near =
+            least_between(d, at_least_0(hn::Sub(d0, error)), at_least_0(hn::Sub(d1, error)), L);
         // The distance to any set changes by at most L; to a convex one it is convex.
-        V<D> far = hn::Max(d0, d1);
-        Vec3v<D> center = e.v;
-        V<D> radius = e.size;
+        V<Tag> far = hn::Max(d0, d1);
+        Vec3v<Tag> center = e.v;
+        V<Tag> radius = e.size;
         if constexpr (shape == Shape::segment) {
-            const V<D> half = constant(0.5);
+            const V<Tag> half = constant(d, 0.5);
             center = {hn::MulAdd(half, e.m.x, center.x), hn::MulAdd(half, e.m.y, center.y),
                       hn::MulAdd(half, e.m.z, center.z)};
             radius = hn::Mul(half, radius);
         } else {
-            far = hn::Mul(constant(0.5), hn::Add(hn::Add(d0, d1), constant(L)));
+            far = hn::Mul(constant(d, 0.5), hn::Add(hn::Add(d0, d1), hn::Set(d, L)));
         }
-        const V<D> ball = hn::Sub(FromAxis(center, s.axis).nearest(s.begin, s.end), radius);
+        const V<Tag> ball = hn::Sub(FromAxis<Tag>(center, s.axis).nearest(s.begin, s.end), radius);
         near = hn::Max(near, hn::Sub(ball, error));
-        if constexpr (shape == Shape::segment) {
+        if constexpr (shape == Shape::segment && sizeof(Real) == sizeof(double)) {
             // |v . (axis x m)| / |axis x m|, unless they are nearly parallel
             const Vec3v<D> n{
                 hn::Sub(hn::Mul(constant(s.axis.y), e.m.z), hn::Mul(constant(s.axis.z), e.m.y)),
@@ -205,21 +333,25 @@ HWY_INLINE DistanceRange distances(const Seen<shape>& e, const Stretch& s, V<D> 
             const V<D> line = hn::Div(hn::Abs(dot<D>(e.v, n)), hn::Sqrt(n_square));
             const auto crosses = hn::Gt(n_square, hn::Mul(constant(0x1p-12), square_of(e.size)));
             near = hn::IfThenElse(
-                crosses, hn::Max(near, hn::NegMulAdd(constant(0x1p-38), e.far, line)), near);
+                crosses, hn::Max(near, hn::NegMulAdd(constant(0x1p-38), e.magnitude, line)), near);
         }
         return {at_least_0(hn::Sub(near, aside)),
-                hn::Add(far, hn::Add(error, constant(s.end * s.spread * more)))};
+                hn::Add(far, hn::Add(error, hn::Set(d, (s.t_offset + s.end) * s.spread * widened *
+                                                           widened)))};
     }
 }
 
-HWY_INLINE V<D> error_of(V<D> far, const Stretch& stretch) {
-    return hn::Mul(hn::Add(far, constant(stretch.end)), constant(margin));
-}
+HWY_INLINE double sum_of(V<D> x) { return hn::GetLane(hn::SumOfLanes(D(), x)); }
 
-double sum_of(V<D> x) {
-    const D d;
-    return hn::GetLane(hn::SumOfLanes(d, x));
+// Each lane's sum is rounded as often as there are summands; the sum over lanes is not.
+#if HWY_TARGET != HWY_SCALAR
+HWY_INLINE double sum_of(V<F> x) {
+    return sum_of(hn::PromoteTo(D(), hn::LowerHalf(x))) +
+           sum_of(hn::PromoteTo(D(), hn::UpperHalf(hn::Half<F>(), x)));
 }
+#else
+HWY_INLINE double sum_of(V<F> x) { return hn::GetLane(x); }
+#endif
 
 template <Shape shape, KernelKind kind>
 void bound_group(const Field& field, const Stretch& stretch, double scale, double cut,
@@ -229,15 +361,16 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
     const I di;
     const std::size_t N = hn::Lanes(d);
     const V<D> zero = hn::Zero(d);
+    const Reach<double> reach = reach_of(stretch);
     V<D> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
-        const Seen<shape> e(field, stretch, scale, index);
-        const DistanceRange range = distances(e, stretch, error_of(e.far, stretch));
+        const Seen<D, shape> e(field, stretch, scale, index);
+        const DistanceRange<D> range = distances(e, reach, error_of(d, e.magnitude, reach));
         const V<D> least =
             hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), constant(less));
-        const V<D> peak = peak_of<kind>(least);
+        const V<D> peak = peak_of<kind>(d, least);
         const V<D> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), constant(more));
         const M<D> adds = hn::Gt(e.strength, zero);
         // not a number: kept
@@ -303,6 +436,7 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
     const I di;
     const std::size_t N = hn::Lanes(d);
     const V<D> zero = hn::Zero(d);
+    const Reach<double> reach = reach_of(stretch);
     V<D> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
@@ -313,16 +447,15 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
                          hn::Sub(column(clusters.y), constant(stretch.origin.y)),
                          hn::Sub(column(clusters.z), constant(stretch.origin.z))};
         const V<D> radius = column(clusters.radius);
-        const V<D> far =
+        const V<D> size =
             hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), radius)),
                     constant(more));
-        const V<D> last = hn::Max(constant(stretch.begin), hn::Min(constant(stretch.end), far));
-        const V<D> off = hn::MulAdd(last, constant(stretch.spread * more), error_of(far, stretch));
-        const V<D> nearest = FromAxis(v, stretch.axis).nearest(stretch.begin, stretch.end);
+        const V<D> off = hn::Add(aside_of(d, size, reach), error_of(d, size, reach));
+        const V<D> nearest = FromAxis<D>(v, stretch.axis).nearest(stretch.begin, stretch.end);
         const V<D> near = at_least_0(hn::Sub(nearest, hn::Add(off, radius)));
         const V<D> least =
             hn::Mul(hn::Mul(square_of(near), column(clusters.inverse_square)), constant(less));
-        const V<D> peak = hn::Mul(peak_of<kind>(least), constant(scale * more));
+        const V<D> peak = hn::Mul(peak_of<kind>(d, least), constant(scale * more));
         const V<D> adds = hn::Mul(column(clusters.above), peak);
         const V<D> takes = hn::Mul(column(clusters.below), peak);
         const V<D> value = hn::Add(adds, takes);
@@ -358,61 +491,126 @@ PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale
 
 // rise: an upper bound of w^2 (k'' s'^2 + k' s'') for all rays on the stretch; fall: of its
 // negative.
+template <class Tag>
 struct Bend {
-    V<D> rise, fall;
+    V<Tag> rise, fall;
 };
 
-template <Shape shape, KernelKind kind>
-HWY_INLINE Bend bend_of(const Seen<shape>& e, const Stretch& s, V<D> error, V<D> least, V<D> most,
-                        V<D> peak, V<D> outward) {
-    const D d;
-    const V<D> zero = hn::Zero(d), one = constant(1), two = constant(2);
+template <KernelKind kind, class Tag, Shape shape>
+HWY_INLINE Bend<Tag> bend_of(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                             V<Tag> error, V<Tag> least, V<Tag> most, V<Tag> peak, V<Tag> outward) {
+    using Real = hn::TFromD<Tag>;
+    using Margin = Margins<Real>;
+    const Tag d;
+    const V<Tag> zero = hn::Zero(d), one = constant(d, 1), two = constant(d, 2);
+    const V<Tag> widened = hn::Set(d, Margin::more), reduced = hn::Set(d, Margin::less);
     if constexpr (kind == KernelKind::blinn) {
         // 2 e^-s (2 x^2 - 1 + outward), with y = x^2 at most s; for a point s = y + h^2.
-        V<D> y0 = least, y1 = most, h_square = zero, fall = hn::Mul(two, peak);
+        V<Tag> y0 = least, y1 = most, h_square = zero, fall = hn::Mul(two, peak);
         if constexpr (shape == Shape::point) {
-            const FromAxis c(e.v, s.axis);
-            const V<D> across = hn::Sqrt(c.across_square);
-            const V<D> turn = hn::Mul(e.far, constant(s.spread * more));
-            const V<D> h = at_least_0(hn::Sub(hn::Sub(across, turn), error));
-            h_square = hn::Mul(hn::Mul(square_of(h), e.inverse_square), constant(less));
-            const V<D> slip = hn::MulAdd(hn::Abs(c.along), constant(s.spread * s.spread),
-                                         hn::MulAdd(across, constant(s.spread * more), error));
-            const V<D> x0 = hn::Sub(hn::Sub(constant(s.begin), c.along), slip);
-            const V<D> x1 = hn::Add(hn::Sub(constant(s.end), c.along), slip);
-            const V<D> near = at_least_0(hn::Max(x0, hn::Neg(x1)));
-            const V<D> far = hn::Max(hn::Abs(x0), hn::Abs(x1));
-            y0 = hn::Mul(hn::Mul(square_of(near), e.inverse_square), constant(less));
-            y1 = hn::Mul(hn::Mul(square_of(far), e.inverse_square), constant(more));
-            fall = hn::Mul(
-                hn::MulAdd(two, at_least_0(hn::NegMulAdd(two, y0, one)), constant(margin)), peak);
+            const FromAxis<Tag> c(e.v, s.axis);
+            const V<Tag> across = hn::Sqrt(c.across_square);
+            const V<Tag> offset = hn::Set(d, s.t_offset);
+            const V<Tag> spread = hn::Set(d, s.spread * Margin::more);
+            const V<Tag> turn = hn::Mul(hn::Add(offset, e.magnitude), spread);
+            const V<Tag> h = at_least_0(hn::Sub(hn::Sub(across, turn), error));
+            h_square = hn::Mul(hn::Mul(square_of(h), e.inverse_square), reduced);
+            const V<Tag> slip = hn::Mul(
+                hn::MulAdd(hn::Add(offset, hn::Abs(c.along)), hn::Set(d, s.spread * s.spread),
+                           hn::MulAdd(across, spread, error)),
+                widened);
+            const V<Tag> x0 = hn::Sub(hn::Sub(hn::Set(d, s.begin), c.along), slip);
+            const V<Tag> x1 = hn::Add(hn::Sub(hn::Set(d, s.end), c.along), slip);
+            const V<Tag> near = at_least_0(hn::Max(x0, hn::Neg(x1)));
+            const V<Tag> far = hn::Max(hn::Abs(x0), hn::Abs(x1));
+            y0 = hn::Mul(hn::Mul(square_of(near), e.inverse_square), reduced);
+            y1 = hn::Mul(hn::Mul(square_of(far), e.inverse_square), widened);
+            fall = hn::Mul(hn::MulAdd(two, at_least_0(hn::NegMulAdd(two, y0, one)),
+                                      hn::Set(d, Margin::margin)),
+                           peak);
         }
         // (2 y - 1) e^-y rises up to 1.5
-        const V<D> y = hn::Max(y0, hn::Min(y1, constant(1.5)));
-        const V<D> steep =
-            hn::Mul(hn::Mul(two, hn::MulSub(two, y, one)), peak_of<kind>(hn::Add(y, h_square)));
-        V<D> rise = hn::IfThenElseZero(hn::Gt(y, constant(0.5)), steep);
+        const V<Tag> y = hn::Max(y0, hn::Min(y1, constant(d, 1.5)));
+        const V<Tag> steep =
+            hn::Mul(hn::Mul(two, hn::MulSub(two, y, one)), peak_of<kind>(d, hn::Add(y, h_square)));
+        V<Tag> rise = hn::IfThenElseZero(hn::Gt(y, constant(d, 0.5)), hn::Mul(steep, widened));
         // |d|^2 is 1 but for 2^-49
-        rise = hn::MulAdd(hn::MulAdd(two, outward, constant(margin)), peak, rise);
+        rise = hn::MulAdd(hn::MulAdd(two, outward, hn::Set(d, Margin::margin)), peak, rise);
         return {rise, fall};
     } else {
         // 4 x^2 k'' - 2 (1 - outward) |k'| with x^2 <= s.
-        const V<D> slope = steepest<kind>(least);
-        V<D> greatest;  // of 4 s k''
+        const V<Tag> slope = steepest<kind>(d, least);
+        V<Tag> greatest;  // of 4 s k''
         if constexpr (kind == KernelKind::wyvill) {
             // 4 s (34 - 24 s) / 9 falls from 17 / 24 on
-            const V<D> s_worst = hn::Max(least, constant(17.0 / 24));
-            greatest = hn::Mul(hn::Mul(constant(4.0 / 9), s_worst),
-                               hn::NegMulAdd(constant(24), s_worst, constant(34)));
+            const V<Tag> s_worst = hn::Max(least, constant(d, 17.0 / 24));
+            greatest = hn::Mul(hn::Mul(constant(d, 4.0 / 9), s_worst),
+                               hn::NegMulAdd(constant(d, 24), s_worst, constant(d, 34)));
         } else {
             // 4 s 3/4 / q^3
-            greatest = hn::Div(constant(3), hn::Sqrt(hn::Max(least, constant(1.0 / 9))));
+            greatest = hn::Div(constant(d, 3), hn::Sqrt(hn::Max(least, constant(d, 1.0 / 9))));
         }
-        const V<D> inward = hn::Mul(hn::Mul(two, at_least_0(hn::Sub(outward, one))), slope);
-        const M<D> reaches = hn::Lt(least, one);
-        return {hn::IfThenElseZero(reaches, hn::Mul(hn::Add(greatest, inward), constant(more))),
-                hn::IfThenElseZero(reaches, hn::Mul(hn::Mul(two, slope), constant(more)))};
+        const V<Tag> inward = hn::Mul(hn::Mul(two, at_least_0(hn::Sub(outward, one))), slope);
+        const M<Tag> reaches = hn::Lt(least, one);
+        return {hn::IfThenElseZero(reaches, hn::Mul(hn::Add(greatest, inward), widened)),
+                hn::IfThenElseZero(reaches, hn::Mul(hn::Mul(two, slope), widened))};
     }
+}
+
+template <class Tag>
+struct BendLanes {
+    V<Tag> rise, fall, kinks;
+};
+
+// Adds the bends of some elements; returns the circles' bound of 1 / rho.
+template <KernelKind kind, class Tag, Shape shape>
+HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                            M<Tag> valid, V<Tag> least, V<Tag> most, V<Tag> peak,
+                            BendLanes<Tag>& sums) {
+    using Real = hn::TFromD<Tag>;
+    using Margin = Margins<Real>;
+    const Tag d;
+    const V<Tag> zero = hn::Zero(d);
+    const V<Tag> error = error_of(d, e.magnitude, s);
+    M<Tag> smooth = valid;
+    V<Tag> inverse = zero, outward = zero;  // 1 / rho, r / rho
+    if constexpr (shape == Shape::circle) {
+        // s'' w^2 / 2 = 1 - r rho'' lies in 1 - r / rho .. 1.
+        const V<Tag> rho0 = e.rho(s.axis, s.begin), rho1 = e.rho(s.axis, s.end);
+        const Real aside = (s.t_offset + s.end) * s.spread * Margin::more * Margin::more;
+        const V<Tag> rho = hn::Sub(
+            least_between(d, at_least_0(hn::Sub(rho0, error)), at_least_0(hn::Sub(rho1, error)),
+                          (s.end - s.begin) * Margin::more),
+            hn::Set(d, aside));
+        const V<Tag> unrounded = hn::Div(constant(d, 1), rho);
+        const M<Tag> bounded = hn::And(
+            hn::Gt(rho, zero), hn::Lt(hn::Mul(e.extra, unrounded), constant(d, greatest_outward)));
+        const M<Tag> is_point = hn::Eq(e.extra, zero);
+        inverse =
+            hn::IfThenElse(bounded, hn::Mul(unrounded, hn::Set(d, Margin::more)), constant(d, -1));
+        inverse = hn::IfThenZeroElse(is_point, inverse);
+        smooth = hn::And(smooth, hn::Ge(inverse, zero));
+        outward = hn::Mul(hn::Mul(e.extra, at_least_0(inverse)), hn::Set(d, Margin::more));
+        // no f'' is known of the others
+        const V<Tag> slope = hn::Mul(
+            hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
+            hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more), slope_of<kind>(d, least, peak)));
+        sums.kinks = hn::Add(sums.kinks, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
+    }
+    const Bend<Tag> bend = bend_of<kind>(e, s, error, least, most, peak, outward);
+    const M<Tag> adds = hn::Gt(e.strength, zero);
+    const V<Tag> weight = hn::IfThenElseZero(
+        smooth, hn::Mul(hn::Mul(hn::Abs(e.strength), e.inverse_square), hn::Set(d, Margin::more)));
+    sums.rise = hn::MulAdd(hn::IfThenElse(adds, bend.rise, bend.fall), weight, sums.rise);
+    sums.fall = hn::MulAdd(hn::IfThenElse(adds, bend.fall, bend.rise), weight, sums.fall);
+    return inverse;
+}
+
+template <class Tag>
+HWY_INLINE void add_up(const BendLanes<Tag>& lanes, BendSums& sums) {
+    sums.rise += sum_of(lanes.rise);
+    sums.fall += sum_of(lanes.fall);
+    sums.kinks += sum_of(lanes.kinks);
 }
 
 template <Shape shape, KernelKind kind>
@@ -420,53 +618,17 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
                 std::size_t first, std::size_t end, BendSums& sums) {
     const D d;
     const I di;
-    const std::size_t N = hn::Lanes(d);
-    const V<D> zero = hn::Zero(d);
-    V<D> rise = zero, fall = zero, kinks = zero;
-    for (std::size_t i = first; i < end; i += N) {
-        const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
-        const M<D> valid = hn::FirstN(d, end - i);
-        const Seen<shape> e(field, stretch, scale, index);
-        const V<D> error = error_of(e.far, stretch);
-        const V<D> least = hn::LoadU(d, &active.least[i]);
-        const V<D> most = hn::LoadU(d, &active.most[i]);
-        const V<D> peak = hn::LoadU(d, &active.peak[i]);
-        M<D> smooth = valid;
-        V<D> inverse = zero, outward = zero;  // 1 / rho, r / rho
-        if constexpr (shape == Shape::circle) {
-            // s'' w^2 / 2 = 1 - r rho'' lies in 1 - r / rho .. 1.
-            const V<D> rho0 = e.rho(stretch.axis, stretch.begin);
-            const V<D> rho1 = e.rho(stretch.axis, stretch.end);
-            const V<D> rho = hn::Sub(
-                least_between(at_least_0(hn::Sub(rho0, error)), at_least_0(hn::Sub(rho1, error)),
-                              (stretch.end - stretch.begin) * more),
-                constant(stretch.end * stretch.spread * more));
-            const V<D> unrounded = hn::Div(constant(1), rho);
-            const M<D> bounded = hn::And(
-                hn::Gt(rho, zero), hn::Lt(hn::Mul(e.extra, unrounded), constant(greatest_outward)));
-            const M<D> is_point = hn::Eq(e.extra, zero);
-            inverse = hn::IfThenElse(bounded, hn::Mul(unrounded, constant(more)), constant(-1));
-            inverse = hn::IfThenZeroElse(is_point, inverse);
-            smooth = hn::And(smooth, hn::Ge(inverse, zero));
-            outward = hn::Mul(e.extra, at_least_0(inverse));
-            hn::StoreU(inverse, d, &active.inverse[i]);
-            // no f'' is known of the others
-            const V<D> slope = hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
-                                       hn::Mul(constant(2 * more), slope_of<kind>(least, peak)));
-            kinks = hn::Add(kinks, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
-        } else {
-            hn::StoreU(zero, d, &active.inverse[i]);  // those of the next group follow
-        }
-        const Bend bend = bend_of<shape, kind>(e, stretch, error, least, most, peak, outward);
-        const M<D> adds = hn::Gt(e.strength, zero);
-        const V<D> weight =
-            hn::IfThenElseZero(smooth, hn::Mul(hn::Abs(e.strength), e.inverse_square));
-        rise = hn::MulAdd(hn::IfThenElse(adds, bend.rise, bend.fall), weight, rise);
-        fall = hn::MulAdd(hn::IfThenElse(adds, bend.fall, bend.rise), weight, fall);
+    const Reach<double> reach = reach_of(stretch);
+    BendLanes<D> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const Seen<D, shape> e(field, stretch, scale, hn::LoadU(di, &active.element[i]));
+        const V<D> inverse =
+            add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &active.least[i]),
+                            hn::LoadU(d, &active.most[i]), hn::LoadU(d, &active.peak[i]), lanes);
+        // of elements that are no circles 0, those of the next group follow
+        hn::StoreU(inverse, d, &active.inverse[i]);
     }
-    sums.rise += sum_of(rise);
-    sums.fall += sum_of(fall);
-    sums.kinks += sum_of(kinks);
+    add_up(lanes, sums);
 }
 
 BendSums bend(const Field& field, const Stretch& stretch, double scale, ActiveElements& active) {
@@ -501,6 +663,164 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) lane[k] = offset(o, lane[k], t, direction);
     return hn::Load(d, lane);
 #endif
+}
+
+// The elements of a list as floats, relative to the middle of a stretch on the axis.
+template <Shape shape>
+void near_group(const Field& field, const Stretch& stretch, double middle, double scale,
+                double unit, const ActiveElements& active, std::size_t first, std::size_t end,
+                NearElements& near) {
+    const D d;
+    const I di;
+    const hn::Rebind<float, D> narrow;
+    const double per_unit = 1 / unit;
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
+        const auto column = [&](const std::vector<double>& values)
+                                HWY_ATTR { return hn::GatherIndex(d, values.data(), index); };
+        const auto put = [&](V<D> x, std::vector<float>& to)
+                             HWY_ATTR { hn::StoreU(hn::DemoteTo(narrow, x), narrow, &to[i]); };
+        const auto place = [&](double o, const std::vector<double>& c, double axis,
+                               std::vector<float>& values) HWY_ATTR {
+            const V<D> from = offset_lanes(o, column(c), middle, axis);
+            put(hn::Mul(from, constant(-per_unit)), values);
+        };
+        place(stretch.origin.x, field.ax, stretch.axis.x, near.x);
+        place(stretch.origin.y, field.ay, stretch.axis.y, near.y);
+        place(stretch.origin.z, field.az, stretch.axis.z, near.z);
+        put(hn::Mul(column(field.strength), constant(scale)), near.strength);
+        put(hn::Mul(column(field.inverse_square), constant(unit * unit)), near.inverse_square);
+        if constexpr (shape == Shape::segment) {
+            put(hn::Mul(column(field.mx), constant(per_unit)), near.mx);
+            put(hn::Mul(column(field.my), constant(per_unit)), near.my);
+            put(hn::Mul(column(field.mz), constant(per_unit)), near.mz);
+            put(hn::Min(hn::Mul(column(field.extra), constant(unit * unit)), constant(1e30)),
+                near.extra);
+            put(hn::Mul(column(field.length), constant(per_unit)), near.length);
+        } else if constexpr (shape == Shape::circle) {
+            put(column(field.mx), near.mx);
+            put(column(field.my), near.my);
+            put(column(field.mz), near.mz);
+            put(hn::Mul(column(field.extra), constant(per_unit)), near.extra);
+        }
+        put(hn::Mul(hn::LoadU(d, &active.least[i]), constant(1 - 0x1p-22)), near.least);
+        put(hn::Mul(hn::LoadU(d, &active.most[i]), constant(1 + 0x1p-22)), near.most);
+        put(hn::MulAdd(hn::LoadU(d, &active.peak[i]), constant(1 + 0x1p-22), constant(1e-37)),
+            near.peak);
+        for (std::size_t k = i; k < i + hn::Lanes(d); ++k) {
+            near.element[k] = static_cast<std::int32_t>(active.element[k]);
+        }
+    }
+}
+
+void enter_near(const Field& field, const Stretch& stretch, double middle, double scale,
+                double unit, const ActiveElements& active, NearElements& near) {
+    near.make_room(active.size());
+    near.first = active.first;
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        const std::size_t first = active.first[group], end = active.first[group + 1];
+        if (first == end) return;
+        near_group<shape>(field, stretch, middle, scale, unit, active, first, end, near);
+    });
+}
+
+template <Shape shape, KernelKind kind>
+void bound_near_group(const NearElements& candidates, const Reach<float>& reach, float cut,
+                      std::size_t first, std::size_t end, NearElements& kept, std::size_t& count,
+                      PeakSums& sums) {
+    const F d;
+    const hn::RebindToSigned<F> di;
+    const V<F> zero = hn::Zero(d), widened = hn::Set(d, Margins<float>::more),
+               reduced = hn::Set(d, Margins<float>::less);
+    V<F> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const M<F> valid = hn::FirstN(d, end - i);
+        const Seen<F, shape> e(candidates, reach, i);
+        const DistanceRange<F> range = distances(e, reach, error_of(d, e.magnitude, reach));
+        const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
+        const V<F> peak = peak_of<kind>(d, least);
+        const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);
+        const M<F> adds = hn::Gt(e.strength, zero);
+        // not a number: kept
+        const M<F> keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
+        const V<F> left = hn::IfThenElseZero(hn::AndNot(keep, valid), value);
+        const V<F> stays = hn::IfThenElseZero(keep, value);
+        rest_above = hn::Add(rest_above, hn::IfThenElseZero(adds, left));
+        rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
+        magnitude = hn::Add(magnitude, stays);
+        above = hn::Add(above, hn::IfThenElseZero(adds, stays));
+        const std::size_t more_of_them = hn::CountTrue(d, keep);
+        if (more_of_them == 0) continue;
+        const auto put = [&](V<F> x, std::vector<float>& to)
+                             HWY_ATTR { hn::CompressStore(x, keep, d, &to[count]); };
+        const auto copy = [&](const std::vector<float>& from, std::vector<float>& to)
+                              HWY_ATTR { put(hn::LoadU(d, &from[i]), to); };
+        copy(candidates.x, kept.x);
+        copy(candidates.y, kept.y);
+        copy(candidates.z, kept.z);
+        put(e.strength, kept.strength);
+        put(e.inverse_square, kept.inverse_square);
+        if constexpr (shape != Shape::point) {
+            put(e.m.x, kept.mx);
+            put(e.m.y, kept.my);
+            put(e.m.z, kept.mz);
+            put(e.extra, kept.extra);
+            if constexpr (shape == Shape::segment) put(e.size, kept.length);
+            put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept.most);
+        }
+        put(least, kept.least);
+        put(peak, kept.peak);
+        hn::CompressStore(hn::LoadU(di, &candidates.element[i]), hn::RebindMask(di, keep), di,
+                          &kept.element[count]);
+        count += more_of_them;
+    }
+    sums.above += sum_of(above);
+    sums.magnitude += sum_of(magnitude);
+    sums.rest_above += sum_of(rest_above);
+    sums.rest_below += sum_of(rest_below);
+}
+
+PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, double cut,
+                    NearElements& kept) {
+    kept.make_room(candidates.size());
+    PeakSums sums;
+    std::size_t count = 0;
+    const Reach<float> reach = reach_of(stretch);
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        kept.first[group] = static_cast<std::uint32_t>(count);
+        const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
+        if (first == end) return;
+        bound_near_group<shape, kind>(candidates, reach, static_cast<float>(cut), first, end, kept,
+                                      count, sums);
+    });
+    kept.first[field_groups] = static_cast<std::uint32_t>(count);
+    return sums;
+}
+
+template <Shape shape, KernelKind kind>
+void bend_near_group(NearElements& near, const Reach<float>& reach, std::size_t first,
+                     std::size_t end, BendSums& sums) {
+    const F d;
+    BendLanes<F> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const Seen<F, shape> e(near, reach, i);
+        const V<F> inverse =
+            add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &near.least[i]),
+                            hn::LoadU(d, &near.most[i]), hn::LoadU(d, &near.peak[i]), lanes);
+        hn::StoreU(inverse, d, &near.inverse[i]);
+    }
+    add_up(lanes, sums);
+}
+
+BendSums bend_near(NearElements& near, const NearStretch& stretch) {
+    BendSums sums;
+    const Reach<float> reach = reach_of(stretch);
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        const std::size_t first = near.first[group], end = near.first[group + 1];
+        if (first == end) return;
+        bend_near_group<shape, kind>(near, reach, first, end, sums);
+    });
+    return sums;
 }
 
 // Rounding errors of one entry, with u the unit roundoff of its stage, eta the error of `away` and
@@ -540,11 +860,12 @@ HWY_INLINE EntryErrors errors_of(double u, V<D> eta, V<D> eta_slope, V<D> least,
 // `least_rho` below which it does not come. A segment whose 1 / |m|^2 counts as 0 stands for its
 // end a.
 template <Shape shape>
-HWY_INLINE EntryErrors etas(double u, double H, double end, double least_rho, const Seen<shape>& e,
-                            V<D> c_length, V<D> inverse, V<D> inverse_width) {
+HWY_INLINE EntryErrors etas(double u, double H, double end, double least_rho,
+                            const Seen<D, shape>& e, V<D> c_length, V<D> inverse,
+                            V<D> inverse_width) {
     const V<D> v_length = hn::Add(constant(H), c_length);
     V<D> eta = hn::MulAdd(constant(4 * u), c_length, constant(8 * u * H));
-    eta = hn::MulAdd(hn::Add(e.far, constant(end)), constant(0x1p-98), eta);
+    eta = hn::MulAdd(hn::Add(e.magnitude, constant(end)), constant(0x1p-98), eta);
     V<D> eta_slope = hn::Zero(D());
     if constexpr (shape == Shape::segment) {
         eta = hn::MulAdd(constant(2), eta,
@@ -586,7 +907,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
-        const Seen<shape> e(field, stretch, scale, index);
+        const Seen<D, shape> e(field, stretch, scale, index);
         const V<D> inverse_width = hn::GatherIndex(d, field.inverse_width.data(), index);
         const V<D> least = hn::LoadU(d, &active.least[i]);
         const V<D> peak = hn::LoadU(d, &active.peak[i]);
@@ -595,7 +916,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         const V<D> strength = hn::Abs(e.strength);
         const V<D> value = hn::Mul(hn::Mul(strength, peak), constant(more));
         const V<D> per_length = hn::Mul(hn::Mul(constant(2 * more), strength), inverse_width);
-        const V<D> whole = hn::Mul(per_length, slope_of<kind>(least, peak));
+        const V<D> whole = hn::Mul(per_length, slope_of<kind>(d, least, peak));
 
         // c - M
         const V<D> cx = hn::Neg(offset_lanes(
@@ -604,7 +925,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
             stretch.origin.y, hn::GatherIndex(d, field.ay.data(), index), middle, stretch.axis.y));
         const V<D> cz = hn::Neg(offset_lanes(
             stretch.origin.z, hn::GatherIndex(d, field.az.data(), index), middle, stretch.axis.z));
-        const V<D> c_length = hn::Mul(length_of({cx, cy, cz}), constant(more));
+        const V<D> c_length = hn::Mul(length_of(d, Vec3v<D>{cx, cy, cz}), constant(more));
         const EntryErrors eta =
             etas<shape>(u, H, stretch.end, least_rho, e, c_length, inverse, inverse_width);
         const EntryErrors off = errors_of<kind>(u, eta.value, eta.slope, least, peak);
@@ -709,7 +1030,8 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
 }  // namespace
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound, bound_clusters, bend, coarse, fine};
+    static const BundleSteps steps{bound,      bound_clusters, bend,   enter_near,
+                                   bound_near, bend_near,      coarse, fine};
     return steps;
 }
 
@@ -755,6 +1077,30 @@ void ActiveElements::make_room(std::size_t count) {
     const std::size_t size = count + count / 2 + room;
     element.assign(size, 0);
     for (auto* values : {&least, &most, &peak, &inverse}) values->assign(size, 0.0);
+}
+
+void ActiveElements::take(const NearElements& near, double unit) {
+    const std::size_t count = near.size();
+    make_room(count);
+    first = near.first;
+    for (std::size_t i = 0; i < count; ++i) {
+        element[i] = near.element[i];
+        least[i] = double{near.least[i]};
+        most[i] = double{near.most[i]};
+        peak[i] = double{near.peak[i]};
+        inverse[i] = double{near.inverse[i]} / unit;
+    }
+    end(count);
+}
+
+void NearElements::make_room(std::size_t count) {
+    if (element.size() >= count + room) return;
+    const std::size_t size = count + count / 2 + room;
+    element.assign(size, 0);
+    for (auto* values : {&x, &y, &z, &strength, &inverse_square, &mx, &my, &mz, &extra, &length,
+                         &least, &most, &peak, &inverse}) {
+        values->assign(size, 0.0F);
+    }
 }
 
 void ActiveElements::end(std::size_t count) {

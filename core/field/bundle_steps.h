@@ -27,6 +27,30 @@ struct Stretch {
     double begin = 0, end = 0;
 };
 
+// The same in units of some length, relative to the place at t = t_offset on the bundle's axis: the
+// points base + tau axis, and what is at most spread (tau + t_offset) away from them.
+struct NearStretch {
+    Vec3d axis, base;
+    double spread = 0;
+    double begin = 0, end = 0;  // tau
+    double t_offset = 0;
+};
+
+// Elements in float, as structure of arrays sorted by group: all that bounds on short stretches ask
+// for, side by side. Lengths in units, relative to a place nearby.
+struct NearElements {
+    std::array<std::uint32_t, field_groups + 1> first{};
+    std::vector<std::int32_t> element;  // indices into Field
+    // As Field and BundleEntry have them; the bounds as in ActiveElements.
+    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, extra, length;
+    std::vector<float> least, most, peak, inverse;
+
+    static constexpr std::size_t room = 32;  // vectors are read and written whole
+
+    [[nodiscard]] std::size_t size() const { return first[field_groups]; }
+    void make_room(std::size_t count);
+};
+
 // Elements that matter on a stretch, sorted by group.
 struct ActiveElements {
     std::array<std::uint32_t, field_groups + 1> first{};  // of each group; the last: how many
@@ -46,6 +70,8 @@ struct ActiveElements {
               std::span<const std::uint32_t> elements);
     // The members of clusters.
     void take_members(const Clusters& clusters, const ActiveElements& of);
+    // With their bounds.
+    void take(const NearElements& near, double unit);
     // Keeps nothing.
     void make_room(std::size_t count);
     // All groups are there: so many elements.
@@ -84,6 +110,15 @@ struct BundleSteps {
     // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
     BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,
                      ActiveElements& active);
+
+    // Those elements with their bounds, in units of `unit`, relative to the place at `middle`.
+    void (*enter_near)(const Field& field, const Stretch& stretch, double middle, double scale,
+                       double unit, const ActiveElements& active, NearElements& near);
+
+    // `bound` and `bend` of them, in float and in their units.
+    PeakSums (*bound_near)(const NearElements& candidates, const NearStretch& stretch, double cut,
+                           NearElements& kept);
+    BendSums (*bend_near)(NearElements& near, const NearStretch& stretch);
 
     // The window's coarse entries, in units of `unit`: those with peaks above `cut`.
     StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale, double unit,

@@ -100,6 +100,10 @@ Field compile(const Scene& scene) {
         field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());
     field.greatest_width =
         field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        field.greatest_size =
+            std::max(field.greatest_size, std::max(field.length[i], field.radius[i]));
+    }
     field.compact = is_compact(field);
     field.clusters = clusters_of(field);
     for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));

@@ -31,6 +31,7 @@ struct Field {
     double threshold = 0;    // T
     double least_width = 0;  // the least w_i; 1 where there is no element
     double greatest_width = 0;
+    double greatest_size = 0;  // of the skeletons: lengths and radii
     // No number is so large or so small, nor any strength so far above T or any two widths so far
     // apart, that products of four of them could leave the range of double: what
     // core/field/bundle.h asks for.
