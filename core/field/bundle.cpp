@@ -20,10 +20,7 @@ constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
 // this share of T; but not below this share of the least width.
 constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 
-// Short stretches are bounded in float unless widths, or widths and skeletons, differ by more: then
-// what rounding takes from a distance, some 2^-14 units, might be more than the thinnest element
-// has.
-constexpr double most_in_float = 0x1p9;
+// Stretches up to this length are bounded in float, where the field suits it.
 constexpr double longest_in_float = 100;  // units
 
 // A window is made for each part of the rays where they are farther apart than this share of its
@@ -76,15 +73,10 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
         return true;
     }
 
-    int exponent = 0;
-    std::frexp(field.threshold, &exponent);
-    scale_ = std::ldexp(1.0, -exponent);
+    scale_ = field.scale;
     threshold_ = field.threshold * scale_;
-    std::frexp(field.greatest_width, &exponent);
-    unit_ = std::ldexp(1.0, exponent - 1);
+    unit_ = field.unit;
     least_width_ = field.least_width;
-    bounds_in_float_ = field.greatest_width < most_in_float * field.least_width &&
-                       field.greatest_size < most_in_float * field.greatest_width;
     coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     refined_cut_ = fine_cut_ * refined_cut_share;
@@ -128,10 +120,17 @@ PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent
     result.in_clusters = parent.in_clusters && in_clusters;
     const auto step = result.in_clusters ? bundle_steps().bound_clusters : bundle_steps().bound;
     const PeakSums peaks = step(*field_, on, scale_, cut, *candidates, result.active);
-    const double sums = 1 + static_cast<double>(candidates->size() + 64) * 0x1p-52;
-    result.rest_above = (parent.rest_above + peaks.rest_above) * sums;
-    result.rest_below = (parent.rest_below + peaks.rest_below) * sums;
+    add_rest(parent, peaks, candidates->size(), 0x1p-52, result);
     return peaks;
+}
+
+// What the parent's rest and the `candidates` left out can add, summed with a relative error of u
+// each.
+void BundleField::add_rest(const Bounded& parent, const PeakSums& peaks, std::size_t candidates,
+                           double u, Bounded& result) {
+    const double sums = 1 + static_cast<double>(candidates + 64) * u;
+    result.rest_above = (parent.rest_above + peaks.rest_above * sums) * (1 + 0x1p-50);
+    result.rest_below = (parent.rest_below + peaks.rest_below * sums) * (1 + 0x1p-50);
 }
 
 bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1,
@@ -147,17 +146,25 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         here.near_middle = parent.near_middle;
         peaks = bundle_steps().bound_near(
             parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
-        const double sums = 1 + static_cast<double>(parent.near.size() + 64) * u;
-        here.rest_above = (parent.rest_above + peaks.rest_above * sums) * (1 + 0x1p-50);
-        here.rest_below = (parent.rest_below + peaks.rest_below * sums) * (1 + 0x1p-50);
+        add_rest(parent, peaks, parent.near.size(), u, here);
     } else {
         const Stretch on = stretch(part, t0, t1);
-        peaks = bound(on, fine_cut_, parent, in_clusters, here);
-        if (bounds_in_float_ && !here.in_clusters && t1 - t0 < longest_in_float * unit_) {
-            here.is_near = true;
-            here.near_middle = 0.5 * (t0 + t1);
-            bundle_steps().enter_near(*field_, on, here.near_middle, scale_, unit_, here.active,
-                                      here.near);
+        here.is_near = field_->suits_float && !(parent.in_clusters && in_clusters) &&
+                       t1 - t0 < longest_in_float * unit_;
+        here.near_middle = 0.5 * (t0 + t1);
+        if (here.is_near && parent.in_clusters) {
+            u = 0x1p-22;
+            here.in_clusters = false;
+            peaks = bundle_steps().bound_members(
+                *field_, stretch(parts_[0], t0, t1), here.near_middle,
+                near_stretch(part, here.near_middle, t0, t1), fine_cut_, parent.active, &here.near);
+            add_rest(parent, peaks, parent.active.size() * cluster_size, u, here);
+        } else {
+            peaks = bound(on, fine_cut_, parent, in_clusters, here);
+            if (here.is_near) {
+                bundle_steps().enter_near(*field_, on, here.near_middle, scale_, unit_, here.active,
+                                          here.near);
+            }
         }
     }
     const double slack = static_cast<double>(here.size() + 4) * u * (peaks.magnitude + threshold_);

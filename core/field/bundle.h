@@ -166,6 +166,8 @@ class BundleField {
     // stay clusters if that is wanted.
     PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
                    Bounded& result);
+    static void add_rest(const Bounded& parent, const PeakSums& peaks, std::size_t candidates,
+                         double u, Bounded& result);
     void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     void bend(const Stretch& on, Bounded& bounded) const;
     void complete(const Stretch& on, const Bounded& bounded, Window& window) const;
@@ -223,7 +225,6 @@ class BundleField {
     double coarse_cut_ = 0, fine_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
-    bool bounds_in_float_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;
 };
 

@@ -724,60 +724,85 @@ void enter_near(const Field& field, const Stretch& stretch, double middle, doubl
     });
 }
 
+struct PeakLanes {
+    V<F> above, magnitude, rest_above, rest_below;
+};
+
+HWY_INLINE PeakLanes no_peaks() {
+    const V<F> zero = hn::Zero(F());
+    return {zero, zero, zero, zero};
+}
+
+HWY_INLINE void add_up(const PeakLanes& lanes, PeakSums& sums) {
+    sums.above += sum_of(lanes.above);
+    sums.magnitude += sum_of(lanes.magnitude);
+    sums.rest_above += sum_of(lanes.rest_above);
+    sums.rest_below += sum_of(lanes.rest_below);
+}
+
+// The valid ones from `first` on; their places, less `place`, are those of `candidates`.
 template <Shape shape, KernelKind kind>
-void bound_near_group(const NearElements& candidates, const Reach<float>& reach, float cut,
-                      std::size_t first, std::size_t end, NearElements& kept, std::size_t& count,
-                      PeakSums& sums) {
+HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t first, M<F> valid,
+                                 const Reach<float>& reach, const Vec3<float>& place, float cut,
+                                 NearElements* kept, std::size_t& count, PeakLanes& sums) {
     const F d;
     const hn::RebindToSigned<F> di;
     const V<F> zero = hn::Zero(d), widened = hn::Set(d, Margins<float>::more),
                reduced = hn::Set(d, Margins<float>::less);
-    V<F> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
-    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        const M<F> valid = hn::FirstN(d, end - i);
-        const Seen<F, shape> e(candidates, reach, i);
-        const DistanceRange<F> range = distances(e, reach, error_of(d, e.magnitude, reach));
-        const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
-        const V<F> peak = peak_of<kind>(d, least);
-        const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);
-        const M<F> adds = hn::Gt(e.strength, zero);
-        // not a number: kept
-        const M<F> keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
-        const V<F> left = hn::IfThenElseZero(hn::AndNot(keep, valid), value);
-        const V<F> stays = hn::IfThenElseZero(keep, value);
-        rest_above = hn::Add(rest_above, hn::IfThenElseZero(adds, left));
-        rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
-        magnitude = hn::Add(magnitude, stays);
-        above = hn::Add(above, hn::IfThenElseZero(adds, stays));
-        const std::size_t more_of_them = hn::CountTrue(d, keep);
-        if (more_of_them == 0) continue;
-        const auto put = [&](V<F> x, std::vector<float>& to)
-                             HWY_ATTR { hn::CompressStore(x, keep, d, &to[count]); };
-        const auto copy = [&](const std::vector<float>& from, std::vector<float>& to)
-                              HWY_ATTR { put(hn::LoadU(d, &from[i]), to); };
-        copy(candidates.x, kept.x);
-        copy(candidates.y, kept.y);
-        copy(candidates.z, kept.z);
-        put(e.strength, kept.strength);
-        put(e.inverse_square, kept.inverse_square);
-        if constexpr (shape != Shape::point) {
-            put(e.m.x, kept.mx);
-            put(e.m.y, kept.my);
-            put(e.m.z, kept.mz);
-            put(e.extra, kept.extra);
-            if constexpr (shape == Shape::segment) put(e.size, kept.length);
-            put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept.most);
-        }
-        put(least, kept.least);
-        put(peak, kept.peak);
-        hn::CompressStore(hn::LoadU(di, &candidates.element[i]), hn::RebindMask(di, keep), di,
-                          &kept.element[count]);
-        count += more_of_them;
+    const Seen<F, shape> e(candidates, reach, first);
+    const DistanceRange<F> range = distances(e, reach, error_of(d, e.magnitude, reach));
+    const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
+    const V<F> peak = peak_of<kind>(d, least);
+    const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);
+    const M<F> adds = hn::Gt(e.strength, zero);
+    // not a number: kept
+    const M<F> keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
+    const V<F> left = hn::IfThenElseZero(hn::AndNot(keep, valid), value);
+    const V<F> stays = hn::IfThenElseZero(keep, value);
+    sums.rest_above = hn::Add(sums.rest_above, hn::IfThenElseZero(adds, left));
+    sums.rest_below = hn::Add(sums.rest_below, hn::IfThenZeroElse(adds, left));
+    sums.magnitude = hn::Add(sums.magnitude, stays);
+    sums.above = hn::Add(sums.above, hn::IfThenElseZero(adds, stays));
+    if (kept == nullptr) return;
+    const std::size_t more_of_them = hn::CountTrue(d, keep);
+    if (more_of_them == 0) return;
+    const auto put = [&](V<F> x, std::vector<float>& to)
+                         HWY_ATTR { hn::CompressStore(x, keep, d, &to[count]); };
+    const auto move =
+        [&](const std::vector<float>& from, float by, std::vector<float>& to)
+            HWY_ATTR { put(hn::Add(hn::LoadU(d, &from[first]), hn::Set(d, by)), to); };
+    move(candidates.x, place.x, kept->x);
+    move(candidates.y, place.y, kept->y);
+    move(candidates.z, place.z, kept->z);
+    put(e.strength, kept->strength);
+    put(e.inverse_square, kept->inverse_square);
+    if constexpr (shape != Shape::point) {
+        put(e.m.x, kept->mx);
+        put(e.m.y, kept->my);
+        put(e.m.z, kept->mz);
+        put(e.extra, kept->extra);
+        if constexpr (shape == Shape::segment) put(e.size, kept->length);
+        put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept->most);
     }
-    sums.above += sum_of(above);
-    sums.magnitude += sum_of(magnitude);
-    sums.rest_above += sum_of(rest_above);
-    sums.rest_below += sum_of(rest_below);
+    put(least, kept->least);
+    put(peak, kept->peak);
+    hn::CompressStore(hn::LoadU(di, &candidates.element[first]), hn::RebindMask(di, keep), di,
+                      &kept->element[count]);
+    count += more_of_them;
+}
+
+template <Shape shape, KernelKind kind>
+void bound_near_group(const NearElements& candidates, const NearStretch& stretch, float cut,
+                      std::size_t first, std::size_t end, NearElements& kept, std::size_t& count,
+                      PeakSums& sums) {
+    const F d;
+    const Reach<float> reach = reach_of(stretch);
+    PeakLanes lanes = no_peaks();
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        bound_near_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
+                                      count, lanes);
+    }
+    add_up(lanes, sums);
 }
 
 PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, double cut,
@@ -785,15 +810,64 @@ PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, 
     kept.make_room(candidates.size());
     PeakSums sums;
     std::size_t count = 0;
-    const Reach<float> reach = reach_of(stretch);
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         kept.first[group] = static_cast<std::uint32_t>(count);
         const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
         if (first == end) return;
-        bound_near_group<shape, kind>(candidates, reach, static_cast<float>(cut), first, end, kept,
-                                      count, sums);
+        bound_near_group<shape, kind>(candidates, stretch, static_cast<float>(cut), first, end,
+                                      kept, count, sums);
     });
     kept.first[field_groups] = static_cast<std::uint32_t>(count);
+    return sums;
+}
+
+// A cluster's centre in double is off by 2^-50 of its distance from the origin; its members are as
+// far from it as they say.
+template <Shape shape, KernelKind kind>
+void bound_member_group(const Field& field, const Stretch& bundle, double middle,
+                        const NearStretch& stretch, float cut, const ActiveElements& active,
+                        std::size_t first, std::size_t end, NearElements* kept, std::size_t& count,
+                        PeakSums& sums) {
+    const F d;
+    const Clusters& clusters = field.clusters;
+    const Reach<float> reach = reach_of(stretch);
+    const double per_unit = 1 / field.unit;
+    const auto place = [&](double center, double origin, double axis) {
+        return static_cast<float>(((center - origin) - middle * axis) * per_unit);
+    };
+    PeakLanes lanes = no_peaks();
+    for (std::size_t i = first; i < end; ++i) {
+        const auto cluster = static_cast<std::size_t>(active.element[i]);
+        const Vec3<float> center{place(clusters.x[cluster], bundle.origin.x, bundle.axis.x),
+                                 place(clusters.y[cluster], bundle.origin.y, bundle.axis.y),
+                                 place(clusters.z[cluster], bundle.origin.z, bundle.axis.z)};
+        Reach<float> from_center = reach;
+        from_center.base = reach.base - center;
+        from_center.magnitude += std::abs(center.x) + std::abs(center.y) + std::abs(center.z) +
+                                 reach.t_offset * 0x1p-30F;
+        const std::size_t last = clusters.first[cluster + 1];
+        for (std::size_t e = clusters.first[cluster]; e < last; e += hn::Lanes(d)) {
+            bound_near_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e), from_center,
+                                          center, cut, kept, count, lanes);
+        }
+    }
+    add_up(lanes, sums);
+}
+
+PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
+                       const NearStretch& stretch, double cut, const ActiveElements& clusters,
+                       NearElements* kept) {
+    if (kept != nullptr) kept->make_room(clusters.size() * cluster_size);
+    PeakSums sums;
+    std::size_t count = 0;
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        if (kept != nullptr) kept->first[group] = static_cast<std::uint32_t>(count);
+        const std::size_t first = clusters.first[group], end = clusters.first[group + 1];
+        if (first == end) return;
+        bound_member_group<shape, kind>(field, bundle, middle, stretch, static_cast<float>(cut),
+                                        clusters, first, end, kept, count, sums);
+    });
+    if (kept != nullptr) kept->first[field_groups] = static_cast<std::uint32_t>(count);
     return sums;
 }
 
@@ -1030,7 +1104,7 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
 }  // namespace
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound,      bound_clusters, bend,   enter_near,
+    static const BundleSteps steps{bound,      bound_clusters, bend,   enter_near, bound_members,
                                    bound_near, bend_near,      coarse, fine};
     return steps;
 }

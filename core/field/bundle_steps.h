@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/field/field.h"
+#include "core/field/near_elements.h"
 #include "core/math/vec3.h"
 
 namespace ivory {
@@ -34,21 +35,6 @@ struct NearStretch {
     double spread = 0;
     double begin = 0, end = 0;  // tau
     double t_offset = 0;
-};
-
-// Elements in float, as structure of arrays sorted by group: all that bounds on short stretches ask
-// for, side by side. Lengths in units, relative to a place nearby.
-struct NearElements {
-    std::array<std::uint32_t, field_groups + 1> first{};
-    std::vector<std::int32_t> element;  // indices into Field
-    // As Field and BundleEntry have them; the bounds as in ActiveElements.
-    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, extra, length;
-    std::vector<float> least, most, peak, inverse;
-
-    static constexpr std::size_t room = 32;  // vectors are read and written whole
-
-    [[nodiscard]] std::size_t size() const { return first[field_groups]; }
-    void make_room(std::size_t count);
 };
 
 // Elements that matter on a stretch, sorted by group.
@@ -114,6 +100,12 @@ struct BundleSteps {
     // Those elements with their bounds, in units of `unit`, relative to the place at `middle`.
     void (*enter_near)(const Field& field, const Stretch& stretch, double middle, double scale,
                        double unit, const ActiveElements& active, NearElements& near);
+
+    // The members of clusters with |F| possibly above `cut`, likewise; `bundle` has the bundle's
+    // origin and axis. Without `kept` only the sums.
+    PeakSums (*bound_members)(const Field& field, const Stretch& bundle, double middle,
+                              const NearStretch& stretch, double cut,
+                              const ActiveElements& clusters, NearElements* kept);
 
     // `bound` and `bend` of them, in float and in their units.
     PeakSums (*bound_near)(const NearElements& candidates, const NearStretch& stretch, double cut,

@@ -42,6 +42,27 @@ std::pair<Vec3d, double> ball_of(const Field& field, std::size_t i) {
     return {a, field.radius[i]};
 }
 
+// The element relative to its cluster's centre.
+void put_member(const Field& field, std::size_t i, const Vec3d& center, NearElements& members) {
+    const double per_unit = 1 / field.unit;
+    const auto narrow = [](double x) { return static_cast<float>(x); };
+    const Vec3d v = field.a(i) - center;
+    members.element[i] = static_cast<std::int32_t>(i);
+    members.x[i] = narrow(v.x * per_unit);
+    members.y[i] = narrow(v.y * per_unit);
+    members.z[i] = narrow(v.z * per_unit);
+    members.strength[i] = narrow(field.strength[i] * field.scale);
+    members.inverse_square[i] = narrow(field.inverse_square[i] * field.unit * field.unit);
+    const bool is_segment = field.shape[i] == Shape::segment;
+    const double direction = is_segment ? per_unit : 1;
+    members.mx[i] = narrow(field.mx[i] * direction);
+    members.my[i] = narrow(field.my[i] * direction);
+    members.mz[i] = narrow(field.mz[i] * direction);
+    members.extra[i] = is_segment ? narrow(std::min(field.extra[i] * field.unit * field.unit, 1e30))
+                                  : narrow(field.extra[i] * per_unit);
+    members.length[i] = narrow(field.length[i] * per_unit);
+}
+
 }  // namespace
 
 std::uint32_t Clusters::of(std::uint32_t element) const {
@@ -52,6 +73,7 @@ std::uint32_t Clusters::of(std::uint32_t element) const {
 Clusters clusters_of(const Field& field) {
     Clusters clusters;
     if (!field.compact || field.size() < least_clustered) return clusters;
+    if (field.suits_float) clusters.members.make_room(field.size());
     for (std::size_t group = 0; group < field_groups; ++group) {
         clusters.first_of_group[group] = static_cast<std::uint32_t>(clusters.size());
         for (std::size_t first = field.first[group]; first < field.first[group + 1];
@@ -71,6 +93,7 @@ Clusters clusters_of(const Field& field) {
             for (std::size_t i = first; i < end; ++i) {
                 const auto [middle, reach] = ball_of(field, i);
                 radius = std::max(radius, (length(middle - center) + reach) * more);
+                if (field.suits_float) put_member(field, i, center, clusters.members);
             }
             clusters.first.push_back(static_cast<std::uint32_t>(first));
             clusters.x.push_back(center.x);
@@ -84,6 +107,7 @@ Clusters clusters_of(const Field& field) {
     }
     clusters.first.push_back(static_cast<std::uint32_t>(field.size()));
     clusters.first_of_group[field_groups] = static_cast<std::uint32_t>(clusters.size());
+    if (field.suits_float) clusters.members.first = field.first;
     return clusters;
 }
 

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/field/near_elements.h"
+
 namespace ivory {
 
 struct Field;
@@ -28,6 +30,9 @@ struct Clusters {
     std::vector<double> x, y, z, radius;             // of a ball that holds the skeletons
     std::vector<double> above, below;                // sums of the b_i > 0 and of the -b_i > 0
     std::vector<double> inverse_square;              // 1 / w^2 of the widest
+    // All elements of the field, each relative to the centre of its cluster; none where widths or
+    // skeletons differ too much for float (core/field/bundle.h).
+    NearElements members;
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
     [[nodiscard]] bool empty() const { return x.empty(); }

@@ -105,6 +105,16 @@ Field compile(const Scene& scene) {
             std::max(field.greatest_size, std::max(field.length[i], field.radius[i]));
     }
     field.compact = is_compact(field);
+    if (field.compact) {
+        constexpr double most_in_float = 0x1p9;
+        int exponent = 0;
+        std::frexp(field.threshold, &exponent);
+        field.scale = std::ldexp(1.0, -exponent);
+        std::frexp(field.greatest_width, &exponent);
+        field.unit = std::ldexp(1.0, exponent - 1);
+        field.suits_float = field.greatest_width < most_in_float * field.least_width &&
+                            field.greatest_size < most_in_float * field.greatest_width;
+    }
     field.clusters = clusters_of(field);
     for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
     field.reach_box = box_of_reach(field);

@@ -36,6 +36,12 @@ struct Field {
     // apart, that products of four of them could leave the range of double: what
     // core/field/bundle.h asks for.
     bool compact = false;
+    // Of a compact field: the greatest power of two up to the greatest width, and what T times it
+    // is in [1/2, 1).
+    double unit = 1, scale = 1;
+    // And neither widths nor skeletons are so different that what float takes from a distance, some
+    // 2^-14 units, could be more than the thinnest element has.
+    bool suits_float = false;
 
     std::vector<Shape> shape;
     std::vector<KernelKind> kernel;

@@ -69,6 +69,22 @@ ElementList list_of(const Field& field, const ElementList& parent, std::size_t c
     return list;
 }
 
+// More of them are not looked at one by one to see whether a list is empty.
+constexpr std::size_t most_tested = 8192;
+
+// The greatest that the clusters' members can add up to on the cone, times Field::scale.
+PeakSums peaks_of_members(const Field& field, const Cone& cone, const ActiveElements& clusters) {
+    const Stretch rays = all_of(field, cone, {0.0, infinity<double>});
+    const double middle = 0.5 * rays.end, per_unit = 1 / field.unit;
+    const NearStretch near{rays.axis,
+                           {},
+                           rays.spread,
+                           -middle * per_unit,
+                           (rays.end - middle) * (1 + 0x1p-50) * per_unit,
+                           middle * per_unit};
+    return bundle_steps().bound_members(field, rays, middle, near, 0, clusters, nullptr);
+}
+
 void give(const ActiveElements& kept, std::vector<std::uint32_t>& indices) {
     indices.assign(kept.element.begin(),
                    kept.element.begin() + static_cast<std::ptrdiff_t>(kept.size()));
@@ -114,8 +130,22 @@ ElementList reaching_clusters(const Field& field, const ElementList& parent, con
         field, all_of(field, cone, {0.0, infinity<double>}), 1, share_of(field), candidates, kept);
     ElementList list = list_of(field, parent, candidates.size(), peaks);
     if (list.certainly_empty) return list;
+    if (!field.suits_float) {
+        give(kept, list.clusters);
+        return list.most_elements() < least_clustered ? reaching_elements(field, parent, cone)
+                                                      : list;
+    }
+    // The clusters' members may be too far away all the same.
+    if (kept.size() * cluster_size < most_tested) {
+        const PeakSums closer = peaks_of_members(field, cone, kept);
+        const double slack = static_cast<double>(kept.size() * cluster_size + 64) * 0x1p-22 *
+                             (closer.magnitude + field.threshold * field.scale);
+        list.certainly_empty =
+            closer.above + list.rest.hi * field.scale + slack < field.threshold * field.scale;
+        if (list.certainly_empty) return list;
+    }
     give(kept, list.clusters);
-    return list.most_elements() < least_clustered ? reaching_elements(field, parent, cone) : list;
+    return list;
 }
 
 }  // namespace ivory
