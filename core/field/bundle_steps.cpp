@@ -341,6 +341,12 @@ HWY_INLINE DistanceRange<Tag> distances(const Seen<Tag, shape>& e, const Reach<h
     }
 }
 
+// Those of the mask side by side, and whatever after them: faster than storing them alone.
+template <class Tag>
+HWY_INLINE void put_kept(Tag d, V<Tag> values, M<Tag> keep, hn::TFromD<Tag>* to) {
+    hn::StoreU(hn::Compress(values, keep), d, to);
+}
+
 HWY_INLINE double sum_of(V<D> x) { return hn::GetLane(hn::SumOfLanes(D(), x)); }
 
 // Each lane's sum is rounded as often as there are summands; the sum over lanes is not.
@@ -381,16 +387,15 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
         magnitude = hn::Add(magnitude, stays);
         above = hn::Add(above, hn::IfThenElseZero(adds, stays));
-        const std::size_t more_of_them =
-            hn::CompressStore(index, hn::RebindMask(di, keep), di, &kept.element[count]);
-        hn::CompressStore(least, keep, d, &kept.least[count]);
+        put_kept(di, index, hn::RebindMask(di, keep), &kept.element[count]);
+        put_kept(d, least, keep, &kept.least[count]);
         if constexpr (shape != Shape::point) {
             const V<D> most =
                 hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), constant(more));
-            hn::CompressStore(most, keep, d, &kept.most[count]);
+            put_kept(d, most, keep, &kept.most[count]);
         }
-        hn::CompressStore(peak, keep, d, &kept.peak[count]);
-        count += more_of_them;
+        put_kept(d, peak, keep, &kept.peak[count]);
+        count += hn::CountTrue(d, keep);
     }
     sums.above += sum_of(above);
     sums.magnitude += sum_of(magnitude);
@@ -465,7 +470,8 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
         rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
         magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, value));
         above = hn::Add(above, hn::IfThenElseZero(keep, adds));
-        count += hn::CompressStore(index, hn::RebindMask(di, keep), di, &kept.element[count]);
+        put_kept(di, index, hn::RebindMask(di, keep), &kept.element[count]);
+        count += hn::CountTrue(d, keep);
     }
     sums.above += sum_of(above);
     sums.magnitude += sum_of(magnitude);
@@ -767,7 +773,7 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
     const std::size_t more_of_them = hn::CountTrue(d, keep);
     if (more_of_them == 0) return;
     const auto put = [&](V<F> x, std::vector<float>& to)
-                         HWY_ATTR { hn::CompressStore(x, keep, d, &to[count]); };
+                         HWY_ATTR { put_kept(d, x, keep, &to[count]); };
     const auto move =
         [&](const std::vector<float>& from, float by, std::vector<float>& to)
             HWY_ATTR { put(hn::Add(hn::LoadU(d, &from[first]), hn::Set(d, by)), to); };
@@ -786,8 +792,8 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
     }
     put(least, kept->least);
     put(peak, kept->peak);
-    hn::CompressStore(hn::LoadU(di, &candidates.element[first]), hn::RebindMask(di, keep), di,
-                      &kept->element[count]);
+    put_kept(di, hn::LoadU(di, &candidates.element[first]), hn::RebindMask(di, keep),
+             &kept->element[count]);
     count += more_of_them;
 }
 
@@ -963,8 +969,8 @@ constexpr std::size_t lanes_at_most = HWY_MAX_BYTES / sizeof(double);
 template <class Real, Shape shape, KernelKind kind>
 void enter_group(const Field& field, const Stretch& stretch, double scale, double unit, double cut,
                  const ActiveElements& active, std::size_t first, std::size_t end, double middle,
-                 std::vector<BundleEntry<Real>>& entries, std::uint32_t* elements,
-                 std::uint32_t& count, StageSums& sums) {
+                 BundleEntry<Real>* entries, std::uint32_t* elements, std::size_t& at,
+                 StageSums& sums) {
     constexpr bool is_coarse = sizeof(Real) == sizeof(float);
     constexpr double u = is_coarse ? 0x1p-24 : 0x1p-53;
     const D d;
@@ -977,7 +983,7 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
     V<D> error = zero, slope = zero, magnitude = zero, full_slope = zero;
     V<D> rest_above = zero, rest_below = zero;
     M<D> bad = hn::FirstN(d, 0);
-    alignas(64) double column[10][lanes_at_most] = {};
+    alignas(64) Real column[10][lanes_at_most] = {};
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
@@ -1037,27 +1043,34 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
 
-        hn::Store(hn::Mul(cx, per_unit), d, column[0]);
-        hn::Store(hn::Mul(cy, per_unit), d, column[1]);
-        hn::Store(hn::Mul(cz, per_unit), d, column[2]);
-        hn::Store(hn::Mul(square, constant(argument_scale<kind>)), d, column[3]);
-        hn::Store(e.strength, d, column[4]);
-        hn::Store(hn::IfThenZeroElse(kinked, hn::Mul(hn::Mul(constant(2), e.strength), square)), d,
-                  column[5]);
+        const auto put = [&](V<D> x, std::size_t j) HWY_ATTR {
+            if constexpr (is_coarse) {
+                const hn::Rebind<float, D> narrow;
+                hn::Store(hn::DemoteTo(narrow, x), narrow, column[j]);
+            } else {
+                hn::Store(x, d, column[j]);
+            }
+        };
+        put(hn::Mul(cx, per_unit), 0);
+        put(hn::Mul(cy, per_unit), 1);
+        put(hn::Mul(cz, per_unit), 2);
+        put(hn::Mul(square, constant(argument_scale<kind>)), 3);
+        put(e.strength, 4);
+        put(hn::IfThenZeroElse(kinked, hn::Mul(hn::Mul(constant(2), e.strength), square)), 5);
         if constexpr (shape != Shape::point) {
-            hn::Store(hn::Mul(e.m.x, m_scale), d, column[6]);
-            hn::Store(hn::Mul(e.m.y, m_scale), d, column[7]);
-            hn::Store(hn::Mul(e.m.z, m_scale), d, column[8]);
-            hn::Store(extra, d, column[9]);
+            put(hn::Mul(e.m.x, m_scale), 6);
+            put(hn::Mul(e.m.y, m_scale), 7);
+            put(hn::Mul(e.m.z, m_scale), 8);
+            put(extra, 9);
         }
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, enters, bits);
         for (std::size_t k = 0; k < N; ++k) {
             if ((bits[k / 8] >> (k % 8) & 1) == 0) continue;
-            const auto c = [&](std::size_t j) { return static_cast<Real>(column[j][k]); };
-            elements[entries.size()] = static_cast<std::uint32_t>(active.element[i + k]);
-            entries.push_back({c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9)});
-            ++count;
+            const auto c = [&](std::size_t j) { return column[j][k]; };
+            elements[at] = static_cast<std::uint32_t>(active.element[i + k]);
+            entries[at] = {c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9)};
+            ++at;
         }
     }
     sums.error += sum_of(error);
@@ -1072,32 +1085,40 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
 StageSums coarse(const Field& field, const Stretch& stretch, double scale, double unit, double cut,
                  const ActiveElements& active, Window& window) {
     StageSums sums;
-    window.coarse.clear();
+    window.coarse.resize(active.size());
     window.coarse_count.fill(0);
     window.coarse_element.resize(active.size());
+    std::size_t at = 0;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
+        const std::size_t before = at;
         enter_group<float, shape, kind>(field, stretch, scale, unit, cut, active, first, end,
-                                        window.middle, window.coarse, window.coarse_element.data(),
-                                        window.coarse_count[group], sums);
+                                        window.middle, window.coarse.data(),
+                                        window.coarse_element.data(), at, sums);
+        window.coarse_count[group] = static_cast<std::uint32_t>(at - before);
     });
+    window.coarse.resize(at);
     return sums;
 }
 
 StageSums fine(const Field& field, const Stretch& stretch, double scale,
                const ActiveElements& active, Window& window) {
     StageSums sums;
-    window.fine.clear();
+    window.fine.resize(active.size());
     window.fine_count.fill(0);
     window.fine_element.resize(active.size());
+    std::size_t at = 0;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
+        const std::size_t before = at;
         enter_group<double, shape, kind>(field, stretch, scale, 1, 0, active, first, end,
-                                         window.middle, window.fine, window.fine_element.data(),
-                                         window.fine_count[group], sums);
+                                         window.middle, window.fine.data(),
+                                         window.fine_element.data(), at, sums);
+        window.fine_count[group] = static_cast<std::uint32_t>(at - before);
     });
+    window.fine.resize(at);
     return sums;
 }
 
