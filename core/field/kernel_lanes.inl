@@ -27,25 +27,51 @@ using V = hn::Vec<Tag>;
 template <class Tag>
 using M = hn::Mask<Tag>;
 
+#if HWY_TARGET == HWY_AVX3
+HWY_INLINE V<hn::ScalableTag<float>> less_nearest_integer(V<hn::ScalableTag<float>> x) {
+    return decltype(x){_mm512_reduce_ps(x.raw, _MM_FROUND_TO_NEAREST_INT)};
+}
+HWY_INLINE V<D> less_nearest_integer(V<D> x) {
+    return V<D>{_mm512_reduce_pd(x.raw, _MM_FROUND_TO_NEAREST_INT)};
+}
+HWY_INLINE V<hn::ScalableTag<float>> times_power_of_two(V<hn::ScalableTag<float>> x,
+                                                        V<hn::ScalableTag<float>> power) {
+    return decltype(x){_mm512_scalef_ps(x.raw, power.raw)};
+}
+HWY_INLINE V<D> times_power_of_two(V<D> x, V<D> power) {
+    return V<D>{_mm512_scalef_pd(x.raw, power.raw)};
+}
+#endif
+
 // 2^-x for x >= 0: exp2_minus of core/interval/exp.h, operation by operation; where the machine
 // fuses products with sums it rounds less often, so that its bound holds all the more.
 template <class Tag>
 HWY_INLINE V<Tag> exp2_minus(Tag d, V<Tag> x) {
     using Real = hn::TFromD<Tag>;
     using C = Exp2Constants<Real>;
+    const V<Tag> within = hn::Min(x, hn::Set(d, C::greatest));
+#if HWY_TARGET == HWY_AVX3
+    // The same numbers by instructions for just that: x - k without rounding, and a scaling by
+    // 2^-k.
+    const V<Tag> r = less_nearest_integer(within);
+#else
     const hn::RebindToUnsigned<Tag> bits;
     const V<Tag> rounder = hn::Set(d, ExpConstants<Real>::rounder);
-    const V<Tag> within = hn::Min(x, hn::Set(d, C::greatest));
     const V<Tag> shifted = hn::Sub(rounder, within);
     const V<Tag> r = hn::Add(within, hn::Sub(shifted, rounder));
+#endif
     V<Tag> q = hn::Set(d, C::series[std::size(C::series) - 1]);
     for (std::size_t i = std::size(C::series) - 1; i > 0; --i) {
         q = hn::MulAdd(q, r, hn::Set(d, C::series[i - 1]));
     }
     const V<Tag> series = hn::MulAdd(q, r, hn::Set(d, Real(1)));
+#if HWY_TARGET == HWY_AVX3
+    return times_power_of_two(series, hn::Sub(r, within));
+#else
     const auto exponent =
         hn::ShiftLeft < sizeof(Real) == 8 ? 52 : 23 > (hn::BitCast(bits, shifted));
     return hn::BitCast(d, hn::Add(hn::BitCast(bits, series), exponent));
+#endif
 }
 
 // Blinn's kernel is computed as 2^-(s / ln 2): what it is given is s times this.
@@ -127,9 +153,8 @@ struct Root {
 
 template <class Tag>
 HWY_INLINE Root<Tag> root(Tag d, V<Tag> x) {
-    const auto c = [&](double value) HWY_ATTR {
-        return hn::Set(d, static_cast<hn::TFromD<Tag>>(value));
-    };
+    const auto c = [&](double value)
+                       HWY_ATTR { return hn::Set(d, static_cast<hn::TFromD<Tag>>(value)); };
 #if HWY_ARCH_X86
     if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
         const V<Tag> y = hn::ApproximateReciprocalSqrt(x);
