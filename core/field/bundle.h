@@ -60,7 +60,8 @@ struct BundleEntry {
     Real cx, cy, cz;
     Real inverse_square;  // 1 / w^2, for Blinn's kernel 1 / (w^2 ln 2)
     Real strength;        // b
-    Real slope;  // 2 b / w^2: F' = slope k'(s) away . d; 0 where `kinked` counts it instead
+    Real slope;  // 2 b / w^2, negative for Blinn's kernel: F' = slope |k'(s)| away . d, or with k';
+                 // 0 where `kinked` counts it instead
     Real mx, my, mz, extra;
 };
 

@@ -1056,7 +1056,9 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
         put(hn::Mul(cz, per_unit), 2);
         put(hn::Mul(square, constant(argument_scale<kind>)), 3);
         put(e.strength, 4);
-        put(hn::IfThenZeroElse(kinked, hn::Mul(hn::Mul(constant(2), e.strength), square)), 5);
+        put(hn::IfThenZeroElse(
+                kinked, hn::Mul(hn::Mul(constant(2 * slope_sign<kind>), e.strength), square)),
+            5);
         if constexpr (shape != Shape::point) {
             put(hn::Mul(e.m.x, m_scale), 6);
             put(hn::Mul(e.m.y, m_scale), 7);

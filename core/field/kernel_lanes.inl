@@ -78,9 +78,13 @@ HWY_INLINE V<Tag> exp2_minus(Tag d, V<Tag> x) {
 template <KernelKind kind>
 inline constexpr double argument_scale = kind == KernelKind::blinn ? 0x1.71547652b82fep+0 : 1;
 
+// And its k' is -k: the sign is left to whoever has a factor to put it into.
+template <KernelKind kind>
+inline constexpr double slope_sign = kind == KernelKind::blinn ? -1 : 1;
+
 template <class Tag>
 struct KernelValue {
-    V<Tag> k, dk;  // k(s), k'(s)
+    V<Tag> k, dk;  // k(s), slope_sign k'(s)
 };
 
 // Of s times argument_scale.
@@ -90,7 +94,7 @@ HWY_INLINE KernelValue<Tag> kernel(Tag d, V<Tag> s) {
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
     if constexpr (kind == KernelKind::blinn) {
         const V<Tag> e = exp2_minus(d, s);
-        return {e, hn::Neg(e)};
+        return {e, e};
     } else if constexpr (kind == KernelKind::wyvill) {
         // (1 - s)^2 (9 - 4 s) / 9 and -2/9 (1 - s) (11 - 6 s)
         const V<Tag> in = hn::Max(hn::Sub(c(1), s), c(0));

@@ -434,16 +434,32 @@ class FrameJob::Work {
         const PixelRect rect = tiles().rect(index);
         RayBundle& rays = traced.rays;
         rays.part_count = 0;
-        rays.bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
         const bool in_parts =
             with_parts && canvas_.tiles[index].list.most_elements() >= BundleField::parts_elements;
+        const bool is_whole = rect.width() == tile_side && rect.height() == tile_side;
+        TileBundles bundles;
+        if (in_parts && is_whole) {
+            bundles = tile_bundles(picture_.view, frame.width, frame.height, rect.x0, rect.y0);
+        }
+        // The one of that number, or of that rectangle where the tile is cut off.
+        const auto bundle = [&](std::size_t number, const PixelRect& part_of_tile) {
+            return in_parts && is_whole
+                       ? bundles[number]
+                       : bundle_around(picture_.view, frame.width, frame.height, part_of_tile);
+        };
+        const auto add_part = [&](std::size_t number, const PixelRect& part_of_tile) {
+            const Bundle of_part = bundle(number, part_of_tile);
+            rays.add_part({.axis = of_part.axis, .spread = of_part.spread});
+        };
+        rays.bundle = bundle(0, rect);
         if (in_parts) {
             rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
             rays.parts[0].first_part = 1;
-            for_quarters(rect, 8, [&](const PixelRect& quarter) { add_part(rays, quarter); });
+            std::size_t number = 1;
+            for_quarters(rect, 8, [&](const PixelRect& quarter) { add_part(number++, quarter); });
             rays.parts[0].end_of_parts = static_cast<std::uint32_t>(rays.part_count);
         }
-        std::size_t count = 0, part = 1;
+        std::size_t count = 0, part = 1, square_number = 5;
         alignas(64) std::array<double, pixels_in_tile> column, row;
         for_quarters(rect, 8, [&](const PixelRect& quarter) {
             BundlePart& of_quarter = rays.parts[part++];
@@ -459,8 +475,9 @@ class FrameJob::Work {
                         traced.pixel[count++] = static_cast<std::uint32_t>(frame.at(i, j));
                     }
                 }
+                const std::size_t number = square_number++;
                 if (!in_parts || first == count) return;
-                add_part(rays, square);
+                add_part(number, square);
                 rays.parts[rays.part_count - 1].first = first;
                 rays.parts[rays.part_count - 1].end = static_cast<std::uint32_t>(count);
             });
@@ -470,12 +487,6 @@ class FrameJob::Work {
         rays.count = count;
         primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
                            row.data(), rays.dx.data(), rays.dy.data(), rays.dz.data());
-    }
-
-    void add_part(RayBundle& rays, const PixelRect& rect) const {
-        const Frame& frame = canvas_.frame;
-        const Bundle bundle = bundle_around(picture_.view, frame.width, frame.height, rect);
-        rays.add_part({.axis = bundle.axis, .spread = bundle.spread});
     }
 
     bool shaded() const { return settings_.task != Task::trace; }

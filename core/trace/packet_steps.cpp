@@ -690,7 +690,8 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
         const KernelValue<D> value =
             kernel<kind>(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
         const double inverse_square = entry[k].inverse_square * (1 / argument_scale<kind>);
-        const V<D> slope = hn::Mul(hn::Set(d, 2 * entry[k].strength * inverse_square), value.dk);
+        const V<D> slope = hn::Mul(
+            hn::Set(d, 2 * slope_sign<kind> * entry[k].strength * inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
@@ -772,7 +773,7 @@ struct LookSum {
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32_t* element,
                          std::uint32_t count, const Field& field, const Vec3v<F>& p, LookSum& sum) {
-    constexpr auto to_slope = static_cast<float>(2 / argument_scale<kind>);
+    constexpr auto to_slope = static_cast<float>(2 * slope_sign<kind> / argument_scale<kind>);
     for (std::uint32_t k = 0; k < count; ++k) {
         const BundleEntry<float>& e = entry[k];
         V<F> square;

@@ -222,7 +222,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
                              .cz = 0,
                              .inverse_square = 1,
                              .strength = -1e12f,
-                             .slope = -1e20f,
+                             .slope = 1e20f,
                              .mx = 0,
                              .my = 0,
                              .mz = 0,
