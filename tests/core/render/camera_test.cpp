@@ -126,6 +126,36 @@ TEST(Camera, AConeHoldsTheRaysOfItsRectangle) {
     }
 }
 
+// And are hardly wider than needed: bundle_around has 4 % to spare.
+TEST(Camera, BundlesOfATileHoldTheRaysOfItsParts) {
+    constexpr int width = 200, height = 120, i0 = 96, j0 = 48;
+    int held = 0;
+    for (const Camera& camera : cameras()) {
+        const View view = make_view(camera);
+        const TileBundles bundles = tile_bundles(view, width, height, i0, j0);
+        for (int j = 0; j < 16; ++j) {
+            for (int i = 0; i < 16; ++i) {
+                const Vec3d d = primary_ray(view, width, height, i0 + i, j0 + j).direction;
+                const int quarter = j / 8 * 2 + i / 8, square = j % 8 / 4 * 2 + i % 8 / 4;
+                for (const int k : {0, 1 + quarter, 5 + quarter * 4 + square}) {
+                    const Bundle& bundle = bundles[static_cast<std::size_t>(k)];
+                    if (bundle.spread > 0.5) continue;  // too wide: nobody relies on it
+                    ++held;
+                    const Vec3l off = widened(d) - widened(bundle.axis);
+                    ASSERT_LE(length(off), Real(bundle.spread)) << i << ", " << j << ", " << k;
+                    ASSERT_LE(std::abs(length(widened(bundle.axis)) - 1), 0x1p-50L);
+                }
+            }
+        }
+        const Bundle whole = bundle_around(view, width, height, {i0, j0, i0 + 16, j0 + 16});
+        if (whole.spread <= 0.5) {
+            EXPECT_LT(bundles[0].spread, whole.spread);
+        }
+        EXPECT_LT(bundles[5].spread, bundles[1].spread);
+    }
+    EXPECT_GT(held, 256);
+}
+
 TEST(Camera, AConeIsNoWiderThanItsCorners) {
     const View view = make_view({{2.2, 2.6, 7.2}, {0.1, 0, -0.3}, {0, 1, 0}, 40});
     const PixelRect rect{16, 32, 32, 48};

@@ -193,6 +193,32 @@ TEST(Packet, ATinySurfaceFarAwayOnTheAxisIsNotMissed) {
     }
 }
 
+TEST(Packet, ATallyIsOfTheFirstRaysAlone) {
+    const auto answers = std::make_unique<BundleIsolations>();
+    Random random(9);
+    for (const std::size_t count :
+         {std::size_t{0}, std::size_t{1}, std::size_t{77}, std::size_t{256}}) {
+        for (const bool all_hit : {true, false}) {
+            BundleTally expected;
+            for (std::size_t k = 0; k < BundleIsolations::room; ++k) {
+                const auto status = static_cast<Status>(all_hit ? 0 : random.below(5));
+                const double lo = random.uniform(1, 2), hi = lo + random.uniform(0, 1);
+                answers->set(k, {status, {lo, hi}});
+                if (k >= count) continue;
+                ++expected.rays[static_cast<std::size_t>(status)];
+                if (!possibly_hit(status)) continue;
+                double& widest =
+                    status == Status::unresolved ? expected.widest_unresolved : expected.widest;
+                widest = std::max(widest, hi - lo);
+            }
+            const BundleTally tally = tally_of(*answers, count);
+            EXPECT_EQ(tally.rays, expected.rays);
+            EXPECT_EQ(tally.widest, expected.widest);
+            EXPECT_EQ(tally.widest_unresolved, expected.widest_unresolved);
+        }
+    }
+}
+
 // A slope whose square is beyond float makes the step infinite: that is no proof of anything.
 TEST(Packet, AStepThatOverflowsDecidesNothing) {
     const auto lanes = std::make_unique<Lanes>();

@@ -1,0 +1,236 @@
+// Clusters hold their members, lists of clusters stand for the whole field, and the windows made
+// from them miss nothing.
+#include "core/field/clusters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/field/bundle.h"
+#include "core/field/surface.h"
+#include "core/math/direction.h"
+#include "tests/tools/random_scene.h"
+#include "tests/tools/seed.h"
+
+namespace ivory {
+namespace {
+
+using tools::Random;
+
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+// Every shape, kernel and sign, in a cube of half side 2: most of it is far from any ray.
+Scene crowd(std::size_t elements, std::uint64_t seed) {
+    const double scale = 2 / (0.9 * std::cbrt(static_cast<double>(elements)));
+    Scene scene = tools::random_scene({.elements = elements, .scale = scale}, seed);
+    for (Element& element : scene.elements) element.visible = true;
+    return scene;
+}
+
+// A point of the skeleton.
+Vec3d on_skeleton(const Field& field, std::size_t i, Random& random) {
+    if (field.shape[i] == Shape::point) return field.a(i);
+    if (field.shape[i] == Shape::segment) {
+        const double share =
+            random.below(3) == 0 ? std::round(random.uniform(0, 1)) : random.uniform(0, 1);
+        return (1 - share) * field.a(i) + share * field.b(i);
+    }
+    const Vec3d normal = unit(field.b(i));
+    const Vec3d across = unit(cross(normal, random.in_cube(1)));
+    return field.a(i) + field.radius[i] * across;
+}
+
+TEST(Clusters, HoldTheirMembers) {
+    const std::uint64_t seed = tools::announced_seed(61);
+    Random random(seed);
+    const Field field = compile(crowd(3000, seed));
+    const Clusters& clusters = field.clusters;
+    ASSERT_GT(clusters.size(), field.size() / cluster_size);
+    ASSERT_EQ(clusters.first.back(), field.size());
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+        ASSERT_GT(clusters.first[c + 1], clusters.first[c]);
+        ASSERT_LE(clusters.first[c + 1] - clusters.first[c], cluster_size);
+        const Vec3d center{clusters.x[c], clusters.y[c], clusters.z[c]};
+        double above = 0, below = 0;
+        for (std::uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
+            ASSERT_EQ(clusters.of(i), c);
+            (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+            ASSERT_LE(clusters.inverse_square[c], 1 / (field.width[i] * field.width[i]));
+            for (int n = 0; n < 5; ++n) {
+                const Vec3d p = on_skeleton(field, i, random);
+                ASSERT_LE(length(p - center), clusters.radius[c] * (1 + 1e-12));
+            }
+        }
+        ASSERT_GE(clusters.above[c], above);
+        ASSERT_GE(clusters.below[c], below);
+    }
+    for (std::size_t group = 0; group < field_groups; ++group) {
+        const std::uint32_t first = clusters.first_of_group[group];
+        ASSERT_EQ(clusters.first[first], field.first[group]);
+    }
+}
+
+TEST(Clusters, FewElementsHaveNone) {
+    EXPECT_TRUE(compile(crowd(least_clustered - 1, 62)).clusters.empty());
+    EXPECT_FALSE(compile(crowd(least_clustered, 62)).clusters.empty());
+    const Field field = compile(crowd(20, 62));
+    EXPECT_EQ(all_clusters(field).elements.size(), field.size());
+    EXPECT_TRUE(all_clusters(field).clusters.empty());
+}
+
+Cone some_cone(const Field& field, Random& random) {
+    const Vec3d apex = 5.0 * unit(random.in_cube(1));
+    const Vec3d target =
+        random.chance(0.7) ? field.a(random.below(field.size())) : random.in_cube(4);
+    return {apex, target - apex, std::exp(random.uniform(-8, -2))};
+}
+
+Vec3d direction_in(const Cone& cone, Random& random) {
+    const Vec3d axis = unit(cone.axis);
+    const Vec3d side = unit(cross(axis, random.in_cube(1)));
+    const double sine = cone.sine * (random.chance(0.4) ? 1 - 1e-9 : random.uniform(0, 1));
+    return unit(std::sqrt(1 - sine * sine) * axis + sine * side);
+}
+
+// What is not on the list sums to a member of its rest, and an empty list's rays stay outside.
+void expect_stands_for_all(const Field& field, const ElementList& list, const Cone& cone,
+                           Random& random, int& left_out) {
+    std::vector<bool> listed(field.size(), false);
+    for (const std::uint32_t i : list.elements) listed[i] = true;
+    for (const std::uint32_t c : list.clusters) {
+        std::fill(listed.begin() + field.clusters.first[c],
+                  listed.begin() + field.clusters.first[c + 1], true);
+    }
+    for (int n = 0; n < 4; ++n) {
+        const Vec3d d = direction_in(cone, random);
+        const Vec3d p = cone.apex + random.uniform(0, 10) * d;
+        if (list.certainly_empty) {
+            ASSERT_LT(sample(field, p).value, 1e-12);
+            continue;
+        }
+        double above = 0, below = 0;
+        for (std::size_t i = 0; i < field.size(); ++i) {
+            if (listed[i]) continue;
+            const double value = element_value(field, i, p);
+            (value > 0 ? above : below) += value;
+            ++left_out;
+        }
+        ASSERT_LE(above * (1 - 1e-9), list.rest.hi);
+        ASSERT_GE(below * (1 - 1e-9), list.rest.lo);
+    }
+}
+
+TEST(Clusters, ListsOfThemStandForAllElements) {
+    const std::uint64_t first = tools::announced_seed(63);
+    int left_out = 0, empty = 0, clustered = 0;
+    for (std::uint64_t seed = first; seed < first + 3; ++seed) {
+        const Field field = compile(crowd(4000, seed));
+        ASSERT_TRUE(field.suits_float);
+        const ElementList all = all_clusters(field);
+        Random random(seed);
+        for (int n = 0; n < 40; ++n) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", cone " + std::to_string(n));
+            const Cone cone = some_cone(field, random);
+            Cone part = cone;
+            part.axis = direction_in({cone.apex, cone.axis, 0.4 * cone.sine}, random);
+            part.sine = 0.4 * cone.sine;
+            const ElementList list = reaching_clusters(field, all, cone);
+            const ElementList shorter = reaching_clusters(field, list, part);
+            const ElementList elements = reaching_elements(field, list, part);
+            ASSERT_TRUE(elements.clusters.empty());
+            ASSERT_NO_FATAL_FAILURE(expect_stands_for_all(field, list, cone, random, left_out));
+            ASSERT_NO_FATAL_FAILURE(expect_stands_for_all(field, shorter, part, random, left_out));
+            ASSERT_NO_FATAL_FAILURE(expect_stands_for_all(field, elements, part, random, left_out));
+            empty += list.certainly_empty;
+            clustered += !list.clusters.empty();
+        }
+    }
+    EXPECT_GT(left_out, 100000);
+    EXPECT_GT(empty, 0);
+    EXPECT_GT(clustered, 20);
+}
+
+// Where f >= 0 on a ray of a bundle's part there is a window, of the part or of the bundle, and
+// all that can matter is in it.
+TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
+    const std::uint64_t first = tools::announced_seed(64);
+    int inside = 0, windows = 0, of_parts = 0;
+    for (std::uint64_t seed = first; seed < first + 6; ++seed) {
+        const bool large = seed % 2 == 0;
+        const Field field = compile(crowd(large ? 3000 : 300, seed));
+        Random random(seed);
+        for (int n = 0; n < 5; ++n) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", bundle " + std::to_string(n));
+            const Vec3d origin = 5.0 * unit(random.in_cube(1));
+            const Vec3d axis = unit(field.a(random.below(field.size())) - origin);
+            constexpr double spread = 0.04;
+            std::vector<BundlePart> parts{
+                {.axis = axis, .spread = spread, .end = 1, .first_part = 1, .end_of_parts = 5}};
+            for (int k = 0; k < 4; ++k) {
+                const Vec3d side = unit(cross(axis, random.in_cube(1)));
+                parts.push_back({.axis = unit(axis + 0.029 * side), .spread = 0.01, .end = 1});
+            }
+            BundleField along;
+            ASSERT_TRUE(along.build(field, all_clusters(field), {origin, axis, spread}, 1e-6));
+            struct Stretch {
+                double begin, end;
+                std::size_t part;
+            };
+            std::vector<Stretch> seen;
+            along.for_windows(
+                parts, [](const BundlePart&, double, double) { return true; },
+                std::numeric_limits<int>::max(),
+                [&](Window& window, const BundlePart& part) {
+                    const auto number = static_cast<std::size_t>(&part - parts.data());
+                    seen.push_back({window.begin, window.end, number});
+                    of_parts += number > 0;
+                    if (random.below(40) != 0) return true;
+                    along.complete(window);
+                    // A bound of what the window leaves out, at one of its places.
+                    const Vec3d d = unit(part.axis + 0.9 * part.spread * random.uniform(0, 1) *
+                                                         unit(random.in_cube(1)));
+                    const Vec3d p = origin + random.uniform(window.begin, window.end) * d;
+                    std::vector<bool> kept(field.size(), false);
+                    for (const std::uint32_t i : window.fine_element) kept[i] = true;
+                    double above = 0, below = 0;
+                    for (std::size_t i = 0; i < field.size(); ++i) {
+                        if (kept[i]) continue;
+                        const double value = element_value(field, i, p) * field.scale;
+                        (value > 0 ? above : below) += std::abs(value);
+                    }
+                    EXPECT_LE(above * (1 - 1e-9), window.fine_bounds.above);
+                    EXPECT_LE(below * (1 - 1e-9), window.fine_bounds.below);
+                    return true;
+                });
+            windows += static_cast<int>(seen.size());
+            for (std::size_t k = 1; k < parts.size(); ++k) {
+                for (int ray = 0; ray < 4; ++ray) {
+                    const Vec3d d =
+                        unit(parts[k].axis + 0.9 * parts[k].spread * unit(random.in_cube(1)));
+                    for (int place = 0; place < 60; ++place) {
+                        const double t = random.uniform(0, 10);
+                        if (!(sample(field, origin + t * d).value > 1e-9)) continue;
+                        ++inside;
+                        EXPECT_TRUE(std::any_of(seen.begin(), seen.end(),
+                                                [&](const Stretch& s) {
+                                                    return (s.part == 0 || s.part == k) &&
+                                                           s.begin <= t && t <= s.end;
+                                                }))
+                            << "t " << t;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(inside, 200);
+    EXPECT_GT(windows, 500);
+    EXPECT_GT(of_parts, 100);
+}
+
+}  // namespace
+}  // namespace ivory
