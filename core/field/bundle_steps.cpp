@@ -7,6 +7,27 @@
 #include "core/math/instruction_sets.h"
 #include "core/math/offset.h"
 
+#ifndef IVORY_BUNDLE_STEPS_TABLES
+#define IVORY_BUNDLE_STEPS_TABLES
+namespace ivory {
+namespace {
+
+// For each byte the numbers of its bits that are set, in order.
+constexpr std::array<std::array<std::uint8_t, 8>, 256> lanes_of_bits = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (std::size_t bits = 0; bits < table.size(); ++bits) {
+        std::size_t at = 0;
+        for (std::uint8_t k = 0; k < 8; ++k) {
+            if ((bits >> k & 1) != 0) table[bits][at++] = k;
+        }
+    }
+    return table;
+}();
+
+}  // namespace
+}  // namespace ivory
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/field/bundle_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
@@ -341,11 +362,63 @@ HWY_INLINE DistanceRange<Tag> distances(const Seen<Tag, shape>& e, const Reach<h
     }
 }
 
-// Those of the mask side by side, and whatever after them: faster than storing them alone.
-template <class Tag>
-HWY_INLINE void put_kept(Tag d, V<Tag> values, M<Tag> keep, hn::TFromD<Tag>* to) {
-    hn::StoreU(hn::Compress(values, keep), d, to);
+#if HWY_TARGET == HWY_AVX3
+HWY_INLINE V<F> compressed(V<F> x, __mmask16 mask) {
+    return V<F>{_mm512_maskz_compress_ps(mask, x.raw)};
 }
+HWY_INLINE hn::Vec<hn::RebindToSigned<F>> compressed(hn::Vec<hn::RebindToSigned<F>> x,
+                                                     __mmask16 mask) {
+    return decltype(x){_mm512_maskz_compress_epi32(mask, x.raw)};
+}
+HWY_INLINE V<D> compressed(V<D> x, __mmask8 mask) {
+    return V<D>{_mm512_maskz_compress_pd(mask, x.raw)};
+}
+HWY_INLINE hn::Vec<I> compressed(hn::Vec<I> x, __mmask8 mask) {
+    return hn::Vec<I>{_mm512_maskz_compress_epi64(mask, x.raw)};
+}
+#endif
+
+// Puts the lanes of a mask side by side, and whatever after them. Highway's own compression copies
+// its tables to the stack at each call (version 1.0.3 with GCC 12).
+template <class Tag>
+class Kept {
+  public:
+    HWY_INLINE Kept(Tag d, M<Tag> mask) : mask_(mask), count_(hn::CountTrue(d, mask)) {
+        if constexpr (by_bits) {
+            std::uint8_t bytes[8] = {};
+            hn::StoreMaskBits(d, mask, bytes);
+            bits_ = bytes[0];
+        }
+    }
+    [[nodiscard]] HWY_INLINE std::size_t count() const { return count_; }
+
+    // Of any numbers as wide as the tag's.
+    template <class Other>
+    HWY_INLINE void put(Other d, V<Other> values, hn::TFromD<Other>* to) const {
+        if constexpr (!by_bits) {
+            hn::StoreU(compressed(values, mask_.raw), d, to);
+        } else if constexpr (lanes == 8) {
+            const hn::RebindToSigned<Other> di;
+            const hn::Rebind<std::uint8_t, decltype(di)> narrow;
+            const auto order = hn::PromoteTo(di, hn::LoadU(narrow, lanes_of_bits[bits_].data()));
+            hn::StoreU(hn::TableLookupLanes(values, hn::IndicesFromVec(d, order)), d, to);
+        } else {
+            HWY_ALIGN hn::TFromD<Other> all[lanes];
+            hn::Store(values, d, all);
+            for (std::size_t k = 0, at = 0; k < lanes; ++k) {
+                to[at] = all[k];
+                at += bits_ >> k & 1;
+            }
+        }
+    }
+
+  private:
+    static constexpr std::size_t lanes = hn::MaxLanes(Tag());
+    static constexpr bool by_bits = lanes <= 8 && HWY_MAX_BYTES < 64;
+    M<Tag> mask_;
+    std::size_t count_;
+    std::size_t bits_ = 0;
+};
 
 HWY_INLINE double sum_of(V<D> x) { return hn::GetLane(hn::SumOfLanes(D(), x)); }
 
@@ -387,15 +460,16 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
         magnitude = hn::Add(magnitude, stays);
         above = hn::Add(above, hn::IfThenElseZero(adds, stays));
-        put_kept(di, index, hn::RebindMask(di, keep), &kept.element[count]);
-        put_kept(d, least, keep, &kept.least[count]);
+        const Kept<D> lanes(d, keep);
+        lanes.put(di, index, &kept.element[count]);
+        lanes.put(d, least, &kept.least[count]);
         if constexpr (shape != Shape::point) {
             const V<D> most =
                 hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), constant(more));
-            put_kept(d, most, keep, &kept.most[count]);
+            lanes.put(d, most, &kept.most[count]);
         }
-        put_kept(d, peak, keep, &kept.peak[count]);
-        count += hn::CountTrue(d, keep);
+        lanes.put(d, peak, &kept.peak[count]);
+        count += lanes.count();
     }
     sums.above += sum_of(above);
     sums.magnitude += sum_of(magnitude);
@@ -470,8 +544,9 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
         rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
         magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, value));
         above = hn::Add(above, hn::IfThenElseZero(keep, adds));
-        put_kept(di, index, hn::RebindMask(di, keep), &kept.element[count]);
-        count += hn::CountTrue(d, keep);
+        const Kept<D> lanes(d, keep);
+        lanes.put(di, index, &kept.element[count]);
+        count += lanes.count();
     }
     sums.above += sum_of(above);
     sums.magnitude += sum_of(magnitude);
@@ -770,10 +845,9 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
     sums.magnitude = hn::Add(sums.magnitude, stays);
     sums.above = hn::Add(sums.above, hn::IfThenElseZero(adds, stays));
     if (kept == nullptr) return;
-    const std::size_t more_of_them = hn::CountTrue(d, keep);
-    if (more_of_them == 0) return;
-    const auto put = [&](V<F> x, std::vector<float>& to)
-                         HWY_ATTR { put_kept(d, x, keep, &to[count]); };
+    const Kept<F> lanes(d, keep);
+    if (lanes.count() == 0) return;
+    const auto put = [&](V<F> x, std::vector<float>& to) HWY_ATTR { lanes.put(d, x, &to[count]); };
     const auto move =
         [&](const std::vector<float>& from, float by, std::vector<float>& to)
             HWY_ATTR { put(hn::Add(hn::LoadU(d, &from[first]), hn::Set(d, by)), to); };
@@ -792,9 +866,8 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
     }
     put(least, kept->least);
     put(peak, kept->peak);
-    put_kept(di, hn::LoadU(di, &candidates.element[first]), hn::RebindMask(di, keep),
-             &kept->element[count]);
-    count += more_of_them;
+    lanes.put(di, hn::LoadU(di, &candidates.element[first]), &kept->element[count]);
+    count += lanes.count();
 }
 
 template <Shape shape, KernelKind kind>
