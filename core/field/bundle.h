@@ -15,6 +15,8 @@
 //         of the angle between ray and segment along it); 2 / w^2 (1 - r rho'') for a circle,
 //         0 <= rho'' <= 1 / rho;
 //     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
+// Long stretches of large scenes are bounded by clusters (core/field/clusters.h); shorter ones by
+// elements, in float relative to their middle where the field suits that, else in double.
 //
 // Places are relative to the middle of the window on the axis, so that the digits are spent where
 // the surface is, however far the origin: with M = origin + middle axis,

@@ -1,9 +1,9 @@
 // What elements can do on a stretch of a bundle, in SIMD over the elements: one body for all
 // instruction sets, the best one that the machine has chosen at run time (Google Highway).
 //
-// Doubles are computed to nearest; each result that has to bound something is moved by 2^-46 of the
-// magnitudes that entered it, and no chain of operations here is longer than some 40 roundings.
-// Where a machine fuses products with sums there are fewer. Sums of bounds have to be widened by
+// Numbers are computed to nearest; each result that has to bound something is moved by 2^-46 (in
+// float by 2^-17) of the magnitudes that entered it, and no chain of operations here is longer than
+// some 40 roundings. Where a machine fuses products with sums there are fewer. Sums of bounds have to be widened by
 // whoever uses them.
 #pragma once
 
