@@ -432,6 +432,33 @@ HWY_INLINE double sum_of(V<F> x) {
 HWY_INLINE double sum_of(V<F> x) { return hn::GetLane(x); }
 #endif
 
+// The sums of peaks, lane by lane: of what is kept and of what is left out, apart what adds to the
+// field and what takes away from it.
+template <class Tag>
+struct PeakLanes {
+    V<Tag> above, magnitude, rest_above, rest_below;
+
+    HWY_INLINE PeakLanes() { above = magnitude = rest_above = rest_below = hn::Zero(Tag()); }
+    HWY_INLINE void add(M<Tag> keep, M<Tag> leave, V<Tag> adds, V<Tag> takes) {
+        rest_above = hn::Add(rest_above, hn::IfThenElseZero(leave, adds));
+        rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
+        magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, hn::Add(adds, takes)));
+        above = hn::Add(above, hn::IfThenElseZero(keep, adds));
+    }
+    // Of elements, which do either.
+    HWY_INLINE void add(M<Tag> keep, M<Tag> leave, V<Tag> strength, V<Tag> value, Tag d) {
+        const M<Tag> is_positive = hn::Gt(strength, hn::Zero(d));
+        add(keep, leave, hn::IfThenElseZero(is_positive, value),
+            hn::IfThenZeroElse(is_positive, value));
+    }
+    HWY_INLINE void add_to(PeakSums& sums) const {
+        sums.above += sum_of(above);
+        sums.magnitude += sum_of(magnitude);
+        sums.rest_above += sum_of(rest_above);
+        sums.rest_below += sum_of(rest_below);
+    }
+};
+
 template <Shape shape, KernelKind kind>
 void bound_group(const Field& field, const Stretch& stretch, double scale, double cut,
                  const ActiveElements& candidates, std::size_t first, std::size_t end,
@@ -439,9 +466,8 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
     const D d;
     const I di;
     const std::size_t N = hn::Lanes(d);
-    const V<D> zero = hn::Zero(d);
     const Reach<double> reach = reach_of(stretch);
-    V<D> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
+    PeakLanes<D> peaks;
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
@@ -451,15 +477,9 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
             hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), constant(less));
         const V<D> peak = peak_of<kind>(d, least);
         const V<D> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), constant(more));
-        const M<D> adds = hn::Gt(e.strength, zero);
         // not a number: kept
         const M<D> keep = hn::AndNot(hn::Le(value, constant(cut)), valid);
-        const V<D> left = hn::IfThenElseZero(hn::AndNot(keep, valid), value);
-        const V<D> stays = hn::IfThenElseZero(keep, value);
-        rest_above = hn::Add(rest_above, hn::IfThenElseZero(adds, left));
-        rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
-        magnitude = hn::Add(magnitude, stays);
-        above = hn::Add(above, hn::IfThenElseZero(adds, stays));
+        peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
         const Kept<D> lanes(d, keep);
         lanes.put(di, index, &kept.element[count]);
         lanes.put(d, least, &kept.least[count]);
@@ -471,10 +491,7 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         lanes.put(d, peak, &kept.peak[count]);
         count += lanes.count();
     }
-    sums.above += sum_of(above);
-    sums.magnitude += sum_of(magnitude);
-    sums.rest_above += sum_of(rest_above);
-    sums.rest_below += sum_of(rest_below);
+    peaks.add_to(sums);
 }
 
 // Calls visit.operator()<shape, kernel>(group).
@@ -514,9 +531,8 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
     const D d;
     const I di;
     const std::size_t N = hn::Lanes(d);
-    const V<D> zero = hn::Zero(d);
     const Reach<double> reach = reach_of(stretch);
-    V<D> above = zero, magnitude = zero, rest_above = zero, rest_below = zero;
+    PeakLanes<D> peaks;
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
@@ -537,21 +553,13 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
         const V<D> peak = hn::Mul(peak_of<kind>(d, least), constant(scale * more));
         const V<D> adds = hn::Mul(column(clusters.above), peak);
         const V<D> takes = hn::Mul(column(clusters.below), peak);
-        const V<D> value = hn::Add(adds, takes);
-        const M<D> keep = hn::AndNot(hn::Le(value, constant(cut)), valid);
-        const M<D> leave = hn::AndNot(keep, valid);
-        rest_above = hn::Add(rest_above, hn::IfThenElseZero(leave, adds));
-        rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
-        magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, value));
-        above = hn::Add(above, hn::IfThenElseZero(keep, adds));
+        const M<D> keep = hn::AndNot(hn::Le(hn::Add(adds, takes), constant(cut)), valid);
+        peaks.add(keep, hn::AndNot(keep, valid), adds, takes);
         const Kept<D> lanes(d, keep);
         lanes.put(di, index, &kept.element[count]);
         count += lanes.count();
     }
-    sums.above += sum_of(above);
-    sums.magnitude += sum_of(magnitude);
-    sums.rest_above += sum_of(rest_above);
-    sums.rest_below += sum_of(rest_below);
+    peaks.add_to(sums);
 }
 
 PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale, double cut,
@@ -748,13 +756,13 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
 
 // The elements of a list as floats, relative to the middle of a stretch on the axis.
 template <Shape shape>
-void near_group(const Field& field, const Stretch& stretch, double middle, double scale,
-                double unit, const ActiveElements& active, std::size_t first, std::size_t end,
+void near_group(const Field& field, const Stretch& stretch, double middle,
+                const ActiveElements& active, std::size_t first, std::size_t end,
                 NearElements& near) {
     const D d;
     const I di;
     const hn::Rebind<float, D> narrow;
-    const double per_unit = 1 / unit;
+    const double unit = field.unit, per_unit = 1 / unit;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
         const auto column = [&](const std::vector<double>& values)
@@ -769,7 +777,7 @@ void near_group(const Field& field, const Stretch& stretch, double middle, doubl
         place(stretch.origin.x, field.ax, stretch.axis.x, near.x);
         place(stretch.origin.y, field.ay, stretch.axis.y, near.y);
         place(stretch.origin.z, field.az, stretch.axis.z, near.z);
-        put(hn::Mul(column(field.strength), constant(scale)), near.strength);
+        put(hn::Mul(column(field.strength), constant(field.scale)), near.strength);
         put(hn::Mul(column(field.inverse_square), constant(unit * unit)), near.inverse_square);
         if constexpr (shape == Shape::segment) {
             put(hn::Mul(column(field.mx), constant(per_unit)), near.mx);
@@ -794,56 +802,34 @@ void near_group(const Field& field, const Stretch& stretch, double middle, doubl
     }
 }
 
-void enter_near(const Field& field, const Stretch& stretch, double middle, double scale,
-                double unit, const ActiveElements& active, NearElements& near) {
+void enter_near(const Field& field, const Stretch& stretch, double middle,
+                const ActiveElements& active, NearElements& near) {
     near.make_room(active.size());
     near.first = active.first;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
-        near_group<shape>(field, stretch, middle, scale, unit, active, first, end, near);
+        near_group<shape>(field, stretch, middle, active, first, end, near);
     });
-}
-
-struct PeakLanes {
-    V<F> above, magnitude, rest_above, rest_below;
-};
-
-HWY_INLINE PeakLanes no_peaks() {
-    const V<F> zero = hn::Zero(F());
-    return {zero, zero, zero, zero};
-}
-
-HWY_INLINE void add_up(const PeakLanes& lanes, PeakSums& sums) {
-    sums.above += sum_of(lanes.above);
-    sums.magnitude += sum_of(lanes.magnitude);
-    sums.rest_above += sum_of(lanes.rest_above);
-    sums.rest_below += sum_of(lanes.rest_below);
 }
 
 // The valid ones from `first` on; their places, less `place`, are those of `candidates`.
 template <Shape shape, KernelKind kind>
 HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t first, M<F> valid,
                                  const Reach<float>& reach, const Vec3<float>& place, float cut,
-                                 NearElements* kept, std::size_t& count, PeakLanes& sums) {
+                                 NearElements* kept, std::size_t& count, PeakLanes<F>& peaks) {
     const F d;
     const hn::RebindToSigned<F> di;
-    const V<F> zero = hn::Zero(d), widened = hn::Set(d, Margins<float>::more),
+    const V<F> widened = hn::Set(d, Margins<float>::more),
                reduced = hn::Set(d, Margins<float>::less);
     const Seen<F, shape> e(candidates, reach, first);
     const DistanceRange<F> range = distances(e, reach, error_of(d, e.magnitude, reach));
     const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
     const V<F> peak = peak_of<kind>(d, least);
     const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);
-    const M<F> adds = hn::Gt(e.strength, zero);
     // not a number: kept
     const M<F> keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
-    const V<F> left = hn::IfThenElseZero(hn::AndNot(keep, valid), value);
-    const V<F> stays = hn::IfThenElseZero(keep, value);
-    sums.rest_above = hn::Add(sums.rest_above, hn::IfThenElseZero(adds, left));
-    sums.rest_below = hn::Add(sums.rest_below, hn::IfThenZeroElse(adds, left));
-    sums.magnitude = hn::Add(sums.magnitude, stays);
-    sums.above = hn::Add(sums.above, hn::IfThenElseZero(adds, stays));
+    peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
     if (kept == nullptr) return;
     const Kept<F> lanes(d, keep);
     if (lanes.count() == 0) return;
@@ -876,12 +862,12 @@ void bound_near_group(const NearElements& candidates, const NearStretch& stretch
                       PeakSums& sums) {
     const F d;
     const Reach<float> reach = reach_of(stretch);
-    PeakLanes lanes = no_peaks();
+    PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         bound_near_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
-                                      count, lanes);
+                                      count, peaks);
     }
-    add_up(lanes, sums);
+    peaks.add_to(sums);
 }
 
 PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, double cut,
@@ -914,7 +900,7 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
     const auto place = [&](double center, double origin, double axis) {
         return static_cast<float>(((center - origin) - middle * axis) * per_unit);
     };
-    PeakLanes lanes = no_peaks();
+    PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; ++i) {
         const auto cluster = static_cast<std::size_t>(active.element[i]);
         const Vec3<float> center{place(clusters.x[cluster], bundle.origin.x, bundle.axis.x),
@@ -927,10 +913,10 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
         const std::size_t last = clusters.first[cluster + 1];
         for (std::size_t e = clusters.first[cluster]; e < last; e += hn::Lanes(d)) {
             bound_near_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e), from_center,
-                                          center, cut, kept, count, lanes);
+                                          center, cut, kept, count, peaks);
         }
     }
-    add_up(lanes, sums);
+    peaks.add_to(sums);
 }
 
 PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,

@@ -3,8 +3,8 @@
 //
 // Numbers are computed to nearest; each result that has to bound something is moved by 2^-46 (in
 // float by 2^-17) of the magnitudes that entered it, and no chain of operations here is longer than
-// some 40 roundings. Where a machine fuses products with sums there are fewer. Sums of bounds have to be widened by
-// whoever uses them.
+// some 40 roundings. Where a machine fuses products with sums there are fewer. Sums of bounds have
+// to be widened by whoever uses them.
 #pragma once
 
 #include <array>
@@ -97,9 +97,9 @@ struct BundleSteps {
     BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,
                      ActiveElements& active);
 
-    // Those elements with their bounds, in units of `unit`, relative to the place at `middle`.
-    void (*enter_near)(const Field& field, const Stretch& stretch, double middle, double scale,
-                       double unit, const ActiveElements& active, NearElements& near);
+    // Those elements with their bounds, in units (Field::unit), relative to the place at `middle`.
+    void (*enter_near)(const Field& field, const Stretch& stretch, double middle,
+                       const ActiveElements& active, NearElements& near);
 
     // The members of clusters with |F| possibly above `cut`, likewise; `bundle` has the bundle's
     // origin and axis. Without `kept` only the sums.

@@ -1,11 +1,7 @@
 #include "core/field/field.h"
 
-#include <hwy/base.h>
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "core/field/bounding_box.h"
 #include "core/math/direction.h"
@@ -82,18 +78,6 @@ void add(Field& field, const Element& element, std::size_t source) {
     field.inverse_square.push_back(1 / (element.width * element.width));
 }
 
-// Elements in the order of their places lie far apart in the scene: asked for ahead of time, each
-// costs a fraction of the wait. (Not inlined, GCC takes it for a function that does nothing.)
-HWY_INLINE void fetch_soon(const Scene& scene, const std::vector<std::uint32_t>& order,
-                           std::size_t k) {
-    constexpr std::size_t ahead = 12;
-    if (k + ahead >= order.size()) return;
-    const auto* const element =
-        reinterpret_cast<const std::byte*>(&scene.elements[order[k + ahead]]);
-    for (std::size_t line = 0; line < sizeof(Element); line += 64) hwy::Prefetch(element + line);
-    hwy::Prefetch(element + sizeof(Element) - 1);
-}
-
 }  // namespace
 
 Field compile(const Scene& scene) {
@@ -112,11 +96,7 @@ Field compile(const Scene& scene) {
     for (std::size_t group = 0; group < field_groups; ++group) {
         field.first[group] = static_cast<std::uint32_t>(field.size());
         if (visible >= least_clustered) sort_by_place(scene, groups[group]);
-        const std::vector<std::uint32_t>& elements = groups[group];
-        for (std::size_t k = 0; k < elements.size(); ++k) {
-            fetch_soon(scene, elements, k);
-            add(field, scene.elements[elements[k]], elements[k]);
-        }
+        for (const std::uint32_t i : groups[group]) add(field, scene.elements[i], i);
     }
     field.first[field_groups] = static_cast<std::uint32_t>(field.size());
     recolor(field, scene);
@@ -163,7 +143,6 @@ std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
     field.green.resize(size);
     field.blue.resize(size);
     for (std::size_t i = 0; i < size; ++i) {
-        fetch_soon(scene, field.source, i);
         const Color& color = scene.elements[field.source[i]].color;
         if (field.color[i] == color) continue;
         changed.push_back(static_cast<std::uint32_t>(i));

@@ -39,8 +39,8 @@ struct Field {
     // Of a compact field: the greatest power of two up to the greatest width, and what T times it
     // is in [1/2, 1).
     double unit = 1, scale = 1;
-    // And neither widths nor skeletons are so different that what float takes from a distance, some
-    // 2^-14 units, could be more than the thinnest element has.
+    // And neither widths nor skeletons are so different that what float takes from a distance,
+    // 2^-17 of lengths up to 100 units, would be much beside the thinnest element.
     bool suits_float = false;
 
     std::vector<Shape> shape;

@@ -1,5 +1,5 @@
-// The kernels and vectors of three components in SIMD, for files that are compiled once for each
-// instruction set (after Highway's convention for such files: no usual guard).
+// The kernels, roots and vectors of three components in SIMD, for files that are compiled once for
+// each instruction set (after Highway's convention for such files: no usual guard).
 #if defined(IVORY_FIELD_KERNEL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef IVORY_FIELD_KERNEL_LANES_INL
 #undef IVORY_FIELD_KERNEL_LANES_INL

@@ -105,15 +105,16 @@ HWY_INLINE FieldValue<Tag> evaluate(Tag d, const Entries& entries, const Counts&
     return sum;
 }
 
-// A vector of doubles that stands there, rounded.
-HWY_INLINE V<F> rounded(const double* values) {
+// values - minus, computed in double.
+HWY_INLINE V<F> rounded_difference(const double* values, double minus) {
     const D d;
+    const V<D> lo = hn::Sub(hn::LoadU(d, values), hn::Set(d, minus));
 #if HWY_TARGET == HWY_SCALAR
-    return hn::DemoteTo(F(), hn::LoadU(d, values));
+    return hn::DemoteTo(F(), lo);
 #else
     const hn::Half<F> half;
-    return hn::Combine(F(), hn::DemoteTo(half, hn::LoadU(d, values + hn::Lanes(d))),
-                       hn::DemoteTo(half, hn::LoadU(d, values)));
+    const V<D> hi = hn::Sub(hn::LoadU(d, values + hn::Lanes(d)), hn::Set(d, minus));
+    return hn::Combine(F(), hn::DemoteTo(half, hi), hn::DemoteTo(half, lo));
 #endif
 }
 
@@ -127,7 +128,9 @@ void prepare(Lanes& lanes) {
         const auto used = hn::FirstN(di, lanes.count - k);
         // The last vector is whole: numbers, but nobody's.
         const auto put = [&](const double* values, float* to) HWY_ATTR {
-            hn::StoreU(hn::IfThenElseZero(hn::RebindMask(d, used), rounded(values + k)), d, to + k);
+            hn::StoreU(
+                hn::IfThenElseZero(hn::RebindMask(d, used), rounded_difference(values + k, 0)), d,
+                to + k);
         };
         put(lanes.dx, lanes.fx.data());
         put(lanes.dy, lanes.fy.data());
@@ -251,19 +254,6 @@ HWY_INLINE RayLanes<D> rays_of(D d, const Window& window, double, const Lanes& l
             {hn::Mul(middle, hn::Sub(x, hn::Set(d, window.axis.x))),
              hn::Mul(middle, hn::Sub(y, hn::Set(d, window.axis.y))),
              hn::Mul(middle, hn::Sub(z, hn::Set(d, window.axis.z)))}};
-}
-
-// values - minus, computed in double.
-HWY_INLINE V<F> rounded_difference(const double* values, double minus) {
-    const D d;
-    const V<D> lo = hn::Sub(hn::LoadU(d, values), hn::Set(d, minus));
-#if HWY_TARGET == HWY_SCALAR
-    return hn::DemoteTo(F(), lo);
-#else
-    const hn::Half<F> half;
-    const V<D> hi = hn::Sub(hn::LoadU(d, values + hn::Lanes(d)), hn::Set(d, minus));
-    return hn::Combine(F(), hn::DemoteTo(half, hi), hn::DemoteTo(half, lo));
-#endif
 }
 
 HWY_INLINE RayLanes<F> rays_of(F d, const Window& window, double unit, const Lanes& lanes,
@@ -818,7 +808,7 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
             const V<D> tau = hn::Mul(hn::Sub(t, middle), per_unit);
             hn::Store(hn::IfThenElse(inside, tau, nowhere), wide, places + k);
         }
-        const V<F> tau = rounded(places);
+        const V<F> tau = rounded_difference(places, 0);
         const M<F> wanted = hn::AndNot(hn::IsNaN(tau), hits);
         if (hn::AllFalse(d, wanted)) continue;
         looked.wanted += hn::CountTrue(d, wanted);
