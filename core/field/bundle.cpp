@@ -13,7 +13,7 @@ constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
 // Windows are halved until f'' could bend f by less than this share of T over one of them.
 constexpr double bend_limit = 8;
 
-constexpr double coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
+constexpr double strong_cut_share = 0x1p-11, coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
 constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
@@ -77,7 +77,6 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     threshold_ = field.threshold * scale_;
     unit_ = field.unit;
     least_width_ = field.least_width;
-    coarse_cut_ = threshold_ * coarse_cut_share;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     refined_cut_ = fine_cut_ * refined_cut_share;
     list_.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
@@ -147,6 +146,12 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         peaks = bundle_steps().bound_near(
             parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
         add_rest(parent, peaks, parent.near.size(), u, here);
+        // Places far from what they are relative to have lost digits.
+        const double middle = 0.5 * (t0 + t1);
+        if (!in_clusters && std::abs(middle - here.near_middle) > long_stretch * unit_) {
+            here.near_middle = middle;
+            bundle_steps().place_near(*field_, stretch(parts_[0], t0, t1), middle, here.near);
+        }
     } else {
         const Stretch on = stretch(part, t0, t1);
         here.is_near = field_->suits_float && !(parent.in_clusters && in_clusters) &&
@@ -210,15 +215,15 @@ bool BundleField::parts_differ(std::size_t depth, const BundlePart& part, double
 
 namespace {
 
-// With u the unit roundoff of the stage.
-StageBounds stage_bounds(const StageSums& stage, double u, std::size_t entries, std::size_t active,
-                         double threshold, double rest_above, double rest_below, double unit,
-                         double tiny) {
-    const double sums = 1 + static_cast<double>(active + 64) * 0x1p-51;
+// With u the unit roundoff of the stage, u_sums that of the sums in `stage`.
+StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, std::size_t entries,
+                         std::size_t active, double threshold, double rest_above, double rest_below,
+                         double unit, double tiny) {
+    const double n = static_cast<double>(active + 64);
+    const double sums = 1 + n * 4 * u_sums;
     const double rounding =
         stage.error * sums +
         static_cast<double>(entries + 4) * u * (stage.magnitude + threshold) * sums + tiny;
-    const double n = static_cast<double>(active + 4);
     StageBounds bounds;
     bounds.above = (rest_above + stage.rest_above) * sums + rounding;
     bounds.below = (rest_below + stage.rest_below) * sums + rounding;
@@ -231,8 +236,7 @@ StageBounds stage_bounds(const StageSums& stage, double u, std::size_t entries, 
 
 void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, double t1) {
     Window& w = window_;
-    Bounded& here = bounded_by_depth_[depth];
-    if (here.is_near) here.active.take(here.near, unit_);
+    const Bounded& here = bounded_by_depth_[depth];
     finished_depth_ = depth;
     finished_ = stretch(part, t0, t1);
     w.begin = t0;
@@ -246,19 +250,37 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     w.fall = here.fall;
     w.is_complete = w.fine_usable = is_refined_ = false;
 
-    const StageSums sums =
-        bundle_steps().coarse(*field_, finished_, scale_, unit_, coarse_cut_, here.active, w);
-    w.coarse_bounds = stage_bounds(sums, 0x1p-24, w.coarse.size(), here.active.size(), threshold_,
-                                   here.rest_above, here.rest_below, unit_, 1e-30);
+    const CoarseCuts cuts{threshold_ * strong_cut_share, threshold_ * coarse_cut_share};
+    StageSums sums;
+    double slope_unit = unit_, u_sums = 0x1p-53;
+    if (here.is_near) {
+        sums = bundle_steps().coarse_near(here.near, near_stretch(part, here.near_middle, t0, t1),
+                                          (w.middle - here.near_middle) / unit_, cuts, w);
+        slope_unit = 1;
+        u_sums = 0x1p-24;
+    } else {
+        sums = bundle_steps().coarse(*field_, finished_, scale_, cuts, here.active, w);
+    }
+    w.coarse_bounds = stage_bounds(sums, 0x1p-24, u_sums, w.strong.size + w.weak.size, here.size(),
+                                   threshold_, here.rest_above, here.rest_below, slope_unit, 1e-30);
+    const double added = 1 + static_cast<double>(here.size() + 64) * 4 * u_sums;
+    w.strong_bounds = {w.coarse_bounds.above + sums.weak_above * added,
+                       w.coarse_bounds.below + sums.weak_below * added,
+                       w.coarse_bounds.slope + sums.weak_slope * slope_unit * added};
     // No product of the walk's formulas comes near the end of float.
     const double size = (sums.magnitude + threshold_) * unit_ * unit_;
     w.coarse_usable = sums.usable && size * w.rise < 1e30 && size * w.fall < 1e30 &&
-                      sums.full_slope * unit_ < 1e14 && w.coarse_bounds.slope < 1e14;
+                      sums.full_slope * slope_unit < 1e14 && w.strong_bounds.slope < 1e14;
 }
 
-void BundleField::complete(const Stretch& on, const Bounded& bounded, Window& w) const {
-    const StageSums sums = bundle_steps().fine(*field_, on, scale_, bounded.active, w);
-    w.fine_bounds = stage_bounds(sums, 0x1p-53, w.fine.size(), bounded.active.size(), threshold_,
+void BundleField::complete(const Stretch& on, const Bounded& bounded, Window& w) {
+    const ActiveElements* active = &bounded.active;
+    if (bounded.is_near) {
+        members_.take(bounded.near, unit_);
+        active = &members_;
+    }
+    const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
+    w.fine_bounds = stage_bounds(sums, 0x1p-53, 0x1p-53, w.fine.size, active->size(), threshold_,
                                  bounded.rest_above, bounded.rest_below, 1, 1e-280);
     w.fine_usable = sums.usable;
     w.is_complete = true;

@@ -73,7 +73,29 @@ struct StageBounds {
     double slope = 0;             // |g' - computed|, g the sum over the fine entries
 };
 
-// One window, ready for the inner loops. Entries are sorted by group.
+// The elements that a stage adds up, sorted by group.
+template <class Real>
+struct StageEntries {
+    std::array<std::uint32_t, field_groups> count{};
+    // Longer than there are entries: the memory is kept.
+    std::vector<BundleEntry<Real>> entry;
+    std::vector<std::uint32_t> element;  // index into Field
+    std::size_t size = 0;
+
+    [[nodiscard]] std::span<const std::uint32_t> elements() const { return {element.data(), size}; }
+    void clear() {
+        size = 0;
+        count.fill(0);
+    }
+    // For so many more.
+    void make_room(std::size_t more) {
+        if (entry.size() >= size + more) return;
+        entry.resize(2 * (size + more));
+        element.resize(2 * (size + more));
+    }
+};
+
+// One window, ready for the inner loops.
 struct Window {
     double begin = 0, middle = 0, end = 0;  // t
     Vec3d axis;                             // of the bundle, or of the part it is made for
@@ -83,18 +105,16 @@ struct Window {
     // unit.
     double rise = 0, fall = 0;
 
-    std::vector<BundleEntry<float>> coarse;  // p - c with p relative to the middle
-    std::array<std::uint32_t, field_groups> coarse_count{};
-    std::vector<std::uint32_t> coarse_element;  // index into Field
-    StageBounds coarse_bounds;                  // per unit
+    // p - c with p relative to the middle. The strong entries alone tell f < 0 where the surface is
+    // far enough.
+    StageEntries<float> strong, weak;
+    StageBounds strong_bounds, coarse_bounds;  // of the strong ones, of both; per unit
     bool coarse_usable = false;
 
     // Once `complete` has been called for this window:
     bool is_complete = false;
-    std::vector<BundleEntry<double>> fine;  // likewise, in scene units
-    std::array<std::uint32_t, field_groups> fine_count{};
-    std::vector<std::uint32_t> fine_element;  // index into Field
-    StageBounds fine_bounds;                  // per scene unit
+    StageEntries<double> fine;  // likewise, in scene units
+    StageBounds fine_bounds;    // per scene unit
     bool fine_usable = false;
 };
 
@@ -149,7 +169,7 @@ class BundleField {
     // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
         bool in_clusters = false;  // `active` are clusters
-        bool is_near = false;      // the elements are in `near`; `active` only has those of windows
+        bool is_near = false;      // the elements are in `near`, not in `active`
         ActiveElements active;
         NearElements near;
         double near_middle = 0;  // the t on the bundle's axis that `near` is relative to
@@ -173,7 +193,7 @@ class BundleField {
                          double u, Bounded& result);
     void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     void bend(const Stretch& on, Bounded& bounded) const;
-    void complete(const Stretch& on, const Bounded& bounded, Window& window) const;
+    void complete(const Stretch& on, const Bounded& bounded, Window& window);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
     [[nodiscard]] bool parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                     double t1) const;
@@ -214,7 +234,7 @@ class BundleField {
     Vec3d origin_;
     std::span<const BundlePart> parts_;
     Bounded list_;
-    ActiveElements members_;  // of clusters
+    ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded near_clusters_;
     std::vector<Bounded> bounded_by_depth_;
     std::size_t finished_depth_ = 0;
@@ -225,7 +245,7 @@ class BundleField {
     bool is_refined_ = false;  // refined_ is that of the window
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
-    double coarse_cut_ = 0, fine_cut_ = 0, refined_cut_ = 0;
+    double fine_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;

@@ -174,6 +174,13 @@ HWY_INLINE Reach<float> reach_of(const NearStretch& s) {
             static_cast<float>(magnitude * (1 + 0x1p-22))};
 }
 
+// Of elements whose places are off by more than their own rounding.
+HWY_INLINE Reach<float> reach_of(const NearStretch& s, const NearElements& near) {
+    Reach<float> reach = reach_of(s);
+    reach.magnitude += 0x1p-5F * near.magnitude;  // margin of that: 2^-22
+    return reach;
+}
+
 // Some elements of a group, seen from where their places are relative to.
 template <class Tag, Shape shape>
 struct Seen {
@@ -754,11 +761,30 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
 #endif
 }
 
-// The elements of a list as floats, relative to the middle of a stretch on the axis.
+void place_near(const Field& field, const Stretch& stretch, double middle, NearElements& near) {
+    const D d;
+    const I di;
+    const hn::Rebind<float, D> narrow;
+    const hn::Rebind<std::int32_t, D> narrow_index;
+    const V<D> outward = constant(-1 / field.unit);
+    for (std::size_t i = 0; i < near.size(); i += hn::Lanes(d)) {
+        const hn::Vec<I> index = hn::PromoteTo(di, hn::LoadU(narrow_index, &near.element[i]));
+        const auto place = [&](double o, const std::vector<double>& c, double axis,
+                               std::vector<float>& values) HWY_ATTR {
+            const V<D> from = offset_lanes(o, hn::GatherIndex(d, c.data(), index), middle, axis);
+            hn::StoreU(hn::DemoteTo(narrow, hn::Mul(from, outward)), narrow, &values[i]);
+        };
+        place(stretch.origin.x, field.ax, stretch.axis.x, near.x);
+        place(stretch.origin.y, field.ay, stretch.axis.y, near.y);
+        place(stretch.origin.z, field.az, stretch.axis.z, near.z);
+    }
+    near.magnitude = 0;
+}
+
+// The elements of a list as floats, but for their places.
 template <Shape shape>
-void near_group(const Field& field, const Stretch& stretch, double middle,
-                const ActiveElements& active, std::size_t first, std::size_t end,
-                NearElements& near) {
+void near_group(const Field& field, const ActiveElements& active, std::size_t first,
+                std::size_t end, NearElements& near) {
     const D d;
     const I di;
     const hn::Rebind<float, D> narrow;
@@ -769,14 +795,6 @@ void near_group(const Field& field, const Stretch& stretch, double middle,
                                 HWY_ATTR { return hn::GatherIndex(d, values.data(), index); };
         const auto put = [&](V<D> x, std::vector<float>& to)
                              HWY_ATTR { hn::StoreU(hn::DemoteTo(narrow, x), narrow, &to[i]); };
-        const auto place = [&](double o, const std::vector<double>& c, double axis,
-                               std::vector<float>& values) HWY_ATTR {
-            const V<D> from = offset_lanes(o, column(c), middle, axis);
-            put(hn::Mul(from, constant(-per_unit)), values);
-        };
-        place(stretch.origin.x, field.ax, stretch.axis.x, near.x);
-        place(stretch.origin.y, field.ay, stretch.axis.y, near.y);
-        place(stretch.origin.z, field.az, stretch.axis.z, near.z);
         put(hn::Mul(column(field.strength), constant(field.scale)), near.strength);
         put(hn::Mul(column(field.inverse_square), constant(unit * unit)), near.inverse_square);
         if constexpr (shape == Shape::segment) {
@@ -809,8 +827,11 @@ void enter_near(const Field& field, const Stretch& stretch, double middle,
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
-        near_group<shape>(field, stretch, middle, active, first, end, near);
+        near_group<shape>(field, active, first, end, near);
     });
+    // Vectors are read whole, beyond the last element too.
+    std::fill_n(near.element.begin() + static_cast<std::ptrdiff_t>(near.size()), hn::Lanes(D()), 0);
+    place_near(field, stretch, middle, near);
 }
 
 // The valid ones from `first` on; their places, less `place`, are those of `candidates`.
@@ -861,7 +882,7 @@ void bound_near_group(const NearElements& candidates, const NearStretch& stretch
                       std::size_t first, std::size_t end, NearElements& kept, std::size_t& count,
                       PeakSums& sums) {
     const F d;
-    const Reach<float> reach = reach_of(stretch);
+    const Reach<float> reach = reach_of(stretch, candidates);
     PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         bound_near_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
@@ -873,6 +894,7 @@ void bound_near_group(const NearElements& candidates, const NearStretch& stretch
 PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, double cut,
                     NearElements& kept) {
     kept.make_room(candidates.size());
+    kept.magnitude = candidates.magnitude;
     PeakSums sums;
     std::size_t count = 0;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
@@ -887,7 +909,8 @@ PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, 
 }
 
 // A cluster's centre in double is off by 2^-50 of its distance from the origin; its members are as
-// far from it as they say.
+// far from it as they say, to 2^-24 of its radius. Moved by its centre, rounded, and rounded once
+// more they are off by less than 2^-23 of both together.
 template <Shape shape, KernelKind kind>
 void bound_member_group(const Field& field, const Stretch& bundle, double middle,
                         const NearStretch& stretch, float cut, const ActiveElements& active,
@@ -908,12 +931,18 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
                                  place(clusters.z[cluster], bundle.origin.z, bundle.axis.z)};
         Reach<float> from_center = reach;
         from_center.base = reach.base - center;
-        from_center.magnitude += std::abs(center.x) + std::abs(center.y) + std::abs(center.z) +
-                                 reach.t_offset * 0x1p-30F;
+        const float aside = std::abs(center.x) + std::abs(center.y) + std::abs(center.z);
+        from_center.magnitude += aside + reach.t_offset * 0x1p-30F;
+        const std::size_t before = count;
         const std::size_t last = clusters.first[cluster + 1];
         for (std::size_t e = clusters.first[cluster]; e < last; e += hn::Lanes(d)) {
             bound_near_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e), from_center,
                                           center, cut, kept, count, peaks);
+        }
+        if (count > before) {
+            kept->magnitude = std::fmax(
+                kept->magnitude, aside + static_cast<float>(clusters.radius[cluster] * per_unit) +
+                                     reach.t_offset * 0x1p-26F);
         }
     }
     peaks.add_to(sums);
@@ -922,7 +951,10 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
 PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
                        const NearStretch& stretch, double cut, const ActiveElements& clusters,
                        NearElements* kept) {
-    if (kept != nullptr) kept->make_room(clusters.size() * cluster_size);
+    if (kept != nullptr) {
+        kept->make_room(clusters.size() * cluster_size);
+        kept->magnitude = 0;
+    }
     PeakSums sums;
     std::size_t count = 0;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
@@ -953,7 +985,7 @@ void bend_near_group(NearElements& near, const Reach<float>& reach, std::size_t 
 
 BendSums bend_near(NearElements& near, const NearStretch& stretch) {
     BendSums sums;
-    const Reach<float> reach = reach_of(stretch);
+    const Reach<float> reach = reach_of(stretch, near);
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = near.first[group], end = near.first[group + 1];
         if (first == end) return;
@@ -975,22 +1007,34 @@ BendSums bend_near(NearElements& near, const NearStretch& stretch) {
 // the second from |d(k x)| <= |dk| sqrt(s) + 1.02 k (eta_slope + 5 u sqrt(s)) and four more
 // roundings. The other kernels: |k'| <= 3, |k''| <= 20.25, s <= 1 where k is not 0, and ten
 // roundings.
+template <class Tag>
 struct EntryErrors {
-    V<D> value, slope;
+    V<Tag> value, slope;
 };
 
-template <KernelKind kind>
-HWY_INLINE EntryErrors errors_of(double u, V<D> eta, V<D> eta_slope, V<D> least, V<D> peak) {
+template <KernelKind kind, class Tag>
+HWY_INLINE EntryErrors<Tag> errors_of(Tag d, double u, const EntryErrors<Tag>& eta, V<Tag> least,
+                                      V<Tag> peak) {
+    const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
     if constexpr (kind == KernelKind::blinn) {
-        const V<D> r = hn::Add(hn::Sqrt(least), constant(1));
-        const V<D> scaled = hn::Mul(peak, r);
-        return {hn::Mul(scaled, hn::MulAdd(constant(13 * u), r, hn::Mul(constant(3), eta))),
-                hn::Mul(hn::Mul(scaled, r),
-                        hn::MulAdd(constant(40 * u), r, hn::Mul(constant(4), eta_slope)))};
+        const V<Tag> r = hn::Add(hn::Sqrt(least), c(1));
+        const V<Tag> scaled = hn::Mul(peak, r);
+        return {hn::Mul(scaled, hn::MulAdd(c(13 * u), r, hn::Mul(c(3), eta.value))),
+                hn::Mul(hn::Mul(scaled, r), hn::MulAdd(c(40 * u), r, hn::Mul(c(4), eta.slope)))};
     }
-    return {hn::MulAdd(constant(8), eta, constant(60 * u)),
-            hn::MulAdd(constant(60), eta_slope, constant(300 * u))};
+    return {hn::MulAdd(c(8), eta.value, c(60 * u)), hn::MulAdd(c(60), eta.slope, c(300 * u))};
 }
+
+// A window as its entries see it, in their lengths.
+struct Entering {
+    double u;     // unit roundoff of the stage
+    double unit;  // of the entries' lengths, in those of the elements
+    double H;     // the greatest |t - middle| + t |d - axis|
+    double end;   // the greatest t
+    // c - M is known to 2 u of itself and this.
+    double place_error;
+    double least_rho;
+};
 
 // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most H, (2)
 // costs 7 u H for p (d - axis, the product; t - middle, d, the product; the sum), 2 u |c - M| and
@@ -998,125 +1042,192 @@ HWY_INLINE EntryErrors errors_of(double u, V<D> eta, V<D> eta_slope, V<D> least,
 // more at the most; so does the circle's axis, whose rho and 1 / rho are off by 6 u, and rho by
 // `least_rho` below which it does not come. A segment whose 1 / |m|^2 counts as 0 stands for its
 // end a.
-template <Shape shape>
-HWY_INLINE EntryErrors etas(double u, double H, double end, double least_rho,
-                            const Seen<D, shape>& e, V<D> c_length, V<D> inverse,
-                            V<D> inverse_width) {
-    const V<D> v_length = hn::Add(constant(H), c_length);
-    V<D> eta = hn::MulAdd(constant(4 * u), c_length, constant(8 * u * H));
-    eta = hn::MulAdd(hn::Add(e.magnitude, constant(end)), constant(0x1p-98), eta);
-    V<D> eta_slope = hn::Zero(D());
+template <Shape shape, class Tag>
+HWY_INLINE EntryErrors<Tag> etas(Tag d, const Entering& on, const Seen<Tag, shape>& e,
+                                 V<Tag> c_length, V<Tag> inverse, V<Tag> inverse_width) {
+    const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
+    const double u = on.u;
+    const V<Tag> v_length = hn::Add(c(on.H), c_length);
+    V<Tag> eta = hn::MulAdd(c(4 * u), c_length, c(8 * u * on.H + on.place_error));
+    eta = hn::MulAdd(hn::Add(e.magnitude, c(on.end)), c(0x1p-98), eta);
+    V<Tag> eta_slope = hn::Zero(d);
     if constexpr (shape == Shape::segment) {
-        eta = hn::MulAdd(constant(2), eta,
-                         hn::MulAdd(constant(12 * u), v_length, hn::Mul(constant(3 * u), e.size)));
-        eta = hn::Add(eta, hn::IfThenElseZero(hn::Eq(e.extra, hn::Zero(D())), e.size));
+        eta = hn::MulAdd(c(2), eta, hn::MulAdd(c(12 * u), v_length, hn::Mul(c(3 * u), e.size)));
+        eta = hn::Add(eta, hn::IfThenElseZero(hn::Eq(e.extra, hn::Zero(d)), e.size));
     } else if constexpr (shape == Shape::circle) {
-        eta =
-            hn::MulAdd(constant(3), eta,
-                       hn::MulAdd(constant(24 * u), v_length, hn::Mul(constant(10 * u), e.extra)));
-        eta = hn::Add(eta, constant(least_rho));
+        eta = hn::MulAdd(c(3), eta, hn::MulAdd(c(24 * u), v_length, hn::Mul(c(10 * u), e.extra)));
+        eta = hn::Add(eta, c(on.least_rho));
         eta_slope = hn::Mul(hn::Mul(e.extra, at_least_0(inverse)),
-                            hn::MulAdd(constant(4), eta, hn::Mul(constant(24 * u), v_length)));
+                            hn::MulAdd(c(4), eta, hn::Mul(c(24 * u), v_length)));
     }
-    const V<D> scale = hn::Mul(inverse_width, constant(more));
+    const V<Tag> scale = hn::Mul(inverse_width, hn::Set(d, Margins<hn::TFromD<Tag>>::more));
     return {hn::Mul(eta, scale), hn::Mul(hn::Add(eta, eta_slope), scale)};
 }
 
-constexpr std::size_t lanes_at_most = HWY_MAX_BYTES / sizeof(double);
+// What is known of some elements of a group when they enter a window.
+template <class Tag, Shape shape>
+struct Arrivals {
+    Seen<Tag, shape> e;
+    Vec3v<Tag> place;  // c - M
+    V<Tag> inverse_width, least, peak, inverse;
+};
 
-// One stage of a window. Real: float for the coarse one, whose lengths are in units of `unit`.
-template <class Real, Shape shape, KernelKind kind>
-void enter_group(const Field& field, const Stretch& stretch, double scale, double unit, double cut,
-                 const ActiveElements& active, std::size_t first, std::size_t end, double middle,
-                 BundleEntry<Real>* entries, std::uint32_t* elements, std::size_t& at,
-                 StageSums& sums) {
+// From the field, in double.
+template <Shape shape>
+struct FieldArrivals {
+    using Lanes = D;
+    const Field& field;
+    const Stretch& stretch;
+    double scale, middle;
+    const ActiveElements& active;
+
+    HWY_INLINE Arrivals<D, shape> at(std::size_t i) const {
+        const D d;
+        const hn::Vec<I> index = hn::LoadU(I(), &active.element[i]);
+        const auto place = [&](double o, const std::vector<double>& c, double axis) HWY_ATTR {
+            return hn::Neg(offset_lanes(o, hn::GatherIndex(d, c.data(), index), middle, axis));
+        };
+        return {Seen<D, shape>(field, stretch, scale, index),
+                {place(stretch.origin.x, field.ax, stretch.axis.x),
+                 place(stretch.origin.y, field.ay, stretch.axis.y),
+                 place(stretch.origin.z, field.az, stretch.axis.z)},
+                hn::GatherIndex(d, field.inverse_width.data(), index),
+                hn::LoadU(d, &active.least[i]),
+                hn::LoadU(d, &active.peak[i]),
+                hn::LoadU(d, &active.inverse[i])};
+    }
+    [[nodiscard]] std::uint32_t element(std::size_t i) const {
+        return static_cast<std::uint32_t>(active.element[i]);
+    }
+};
+
+// From elements in float; `middle` is the window's, relative to the same place.
+template <Shape shape>
+struct NearArrivals {
+    using Lanes = F;
+    const NearElements& near;
+    Reach<float> reach;
+    Vec3<float> middle;
+
+    HWY_INLINE Arrivals<F, shape> at(std::size_t i) const {
+        const F d;
+        const auto place = [&](const std::vector<float>& c, float from)
+                               HWY_ATTR { return hn::Sub(hn::LoadU(d, &c[i]), hn::Set(d, from)); };
+        const Seen<F, shape> e(near, reach, i);
+        return {e,
+                {place(near.x, middle.x), place(near.y, middle.y), place(near.z, middle.z)},
+                hn::Sqrt(e.inverse_square),
+                hn::LoadU(d, &near.least[i]),
+                hn::LoadU(d, &near.peak[i]),
+                hn::LoadU(d, &near.inverse[i])};
+    }
+    [[nodiscard]] std::uint32_t element(std::size_t i) const {
+        return static_cast<std::uint32_t>(near.element[i]);
+    }
+};
+
+template <class Tag>
+HWY_INLINE std::uint32_t lane_bits(Tag d, M<Tag> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
+// Some elements of one stage of a window: those with peaks above the first cut enter `strong`,
+// others with peaks above the second one `weak`. In float lengths are in units.
+template <class Real, Shape shape, KernelKind kind, class Source>
+void enter_group(const Source& source, const Entering& on, const CoarseCuts& cuts,
+                 std::size_t first, std::size_t end, StageEntries<Real>& strong,
+                 StageEntries<Real>* weak, StageSums& sums) {
+    using Tag = typename Source::Lanes;
     constexpr bool is_coarse = sizeof(Real) == sizeof(float);
-    constexpr double u = is_coarse ? 0x1p-24 : 0x1p-53;
-    const D d;
-    const I di;
+    constexpr std::size_t lanes_at_most = hn::MaxLanes(Tag());
+    const Tag d;
     const std::size_t N = hn::Lanes(d);
-    const V<D> zero = hn::Zero(d);
-    const double H =
-        0.5 * (stretch.end - stretch.begin) * more + stretch.end * stretch.spread * more;
-    const double least_rho = std::sqrt(double{least_square<Real>}) * (is_coarse ? unit : 1) * more;
-    V<D> error = zero, slope = zero, magnitude = zero, full_slope = zero;
-    V<D> rest_above = zero, rest_below = zero;
-    M<D> bad = hn::FirstN(d, 0);
+    const V<Tag> zero = hn::Zero(d);
+    const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
+    const V<Tag> widened = hn::Set(d, Margins<hn::TFromD<Tag>>::more);
+    V<Tag> error = zero, slope = zero, magnitude = zero, full_slope = zero;
+    V<Tag> rest_above = zero, rest_below = zero;
+    V<Tag> weak_above = zero, weak_below = zero, weak_slope = zero;
+    M<Tag> bad = hn::FirstN(d, 0);
     alignas(64) Real column[10][lanes_at_most] = {};
+    const std::size_t strong_before = strong.size, weak_before = weak != nullptr ? weak->size : 0;
+    strong.make_room(end - first);
+    if (weak != nullptr) weak->make_room(end - first);
     for (std::size_t i = first; i < end; i += N) {
-        const hn::Vec<I> index = hn::LoadU(di, &active.element[i]);
-        const M<D> valid = hn::FirstN(d, end - i);
-        const Seen<D, shape> e(field, stretch, scale, index);
-        const V<D> inverse_width = hn::GatherIndex(d, field.inverse_width.data(), index);
-        const V<D> least = hn::LoadU(d, &active.least[i]);
-        const V<D> peak = hn::LoadU(d, &active.peak[i]);
-        const V<D> inverse = hn::LoadU(d, &active.inverse[i]);
-        const M<D> kinked = hn::Lt(inverse, zero);
-        const V<D> strength = hn::Abs(e.strength);
-        const V<D> value = hn::Mul(hn::Mul(strength, peak), constant(more));
-        const V<D> per_length = hn::Mul(hn::Mul(constant(2 * more), strength), inverse_width);
-        const V<D> whole = hn::Mul(per_length, slope_of<kind>(d, least, peak));
+        const M<Tag> valid = hn::FirstN(d, end - i);
+        const Arrivals<Tag, shape> arrivals = source.at(i);
+        const Seen<Tag, shape>& e = arrivals.e;
+        const M<Tag> kinked = hn::Lt(arrivals.inverse, zero);
+        const V<Tag> strength = hn::Abs(e.strength);
+        const V<Tag> value = hn::Mul(hn::Mul(strength, arrivals.peak), widened);
+        const V<Tag> per_length =
+            hn::Mul(hn::Mul(hn::Add(widened, widened), strength), arrivals.inverse_width);
+        const V<Tag> whole = hn::Mul(per_length, slope_of<kind>(d, arrivals.least, arrivals.peak));
+        const V<Tag> c_length = hn::Mul(length_of(d, arrivals.place), widened);
+        const EntryErrors<Tag> eta =
+            etas<shape>(d, on, e, c_length, arrivals.inverse, arrivals.inverse_width);
+        const EntryErrors<Tag> off = errors_of<kind>(d, on.u, eta, arrivals.least, arrivals.peak);
 
-        // c - M
-        const V<D> cx = hn::Neg(offset_lanes(
-            stretch.origin.x, hn::GatherIndex(d, field.ax.data(), index), middle, stretch.axis.x));
-        const V<D> cy = hn::Neg(offset_lanes(
-            stretch.origin.y, hn::GatherIndex(d, field.ay.data(), index), middle, stretch.axis.y));
-        const V<D> cz = hn::Neg(offset_lanes(
-            stretch.origin.z, hn::GatherIndex(d, field.az.data(), index), middle, stretch.axis.z));
-        const V<D> c_length = hn::Mul(length_of(d, Vec3v<D>{cx, cy, cz}), constant(more));
-        const EntryErrors eta =
-            etas<shape>(u, H, stretch.end, least_rho, e, c_length, inverse, inverse_width);
-        const EntryErrors off = errors_of<kind>(u, eta.value, eta.slope, least, peak);
-
-        const M<D> enters = is_coarse ? hn::AndNot(hn::Le(value, constant(cut)), valid) : valid;
-        const M<D> leaves = hn::AndNot(enters, valid);
-        const M<D> adds = hn::Gt(e.strength, zero);
-        const V<D> left = hn::IfThenElseZero(leaves, value);
+        M<Tag> is_strong = valid, enters = valid;
+        if constexpr (is_coarse) {
+            is_strong = hn::AndNot(hn::Le(value, c(cuts.strong)), valid);
+            enters = hn::AndNot(hn::Le(value, c(cuts.weak)), valid);
+        }
+        const M<Tag> leaves = hn::AndNot(enters, valid);
+        const M<Tag> adds = hn::Gt(e.strength, zero);
+        const V<Tag> left = hn::IfThenElseZero(leaves, value);
         rest_above = hn::Add(rest_above, hn::IfThenElseZero(adds, left));
         rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
         full_slope = hn::Add(full_slope, hn::IfThenElseZero(valid, whole));
-        const V<D> slope_off =
+        const V<Tag> slope_off =
             hn::IfThenElse(hn::Or(kinked, leaves), whole, hn::Mul(per_length, off.slope));
         slope = hn::Add(slope, hn::IfThenElseZero(valid, slope_off));
         error = hn::Add(error, hn::IfThenElseZero(enters, hn::Mul(strength, off.value)));
         magnitude = hn::Add(magnitude, hn::IfThenElseZero(enters, value));
+        const M<Tag> is_weak = hn::AndNot(is_strong, enters);
+        if constexpr (is_coarse) {
+            const V<Tag> part = hn::IfThenElseZero(is_weak, value);
+            weak_above = hn::Add(weak_above, hn::IfThenElseZero(adds, part));
+            weak_below = hn::Add(weak_below, hn::IfThenZeroElse(adds, part));
+            weak_slope = hn::Add(weak_slope, hn::IfThenElseZero(is_weak, whole));
+        }
 
-        const V<D> per_unit = constant(is_coarse ? 1 / unit : 1);
-        const V<D> square = hn::Mul(e.inverse_square, constant(is_coarse ? unit * unit : 1));
-        V<D> extra = e.extra;
-        V<D> m_scale = constant(1);
+        const V<Tag> per_unit = c(1 / on.unit);
+        const V<Tag> square = hn::Mul(e.inverse_square, c(on.unit * on.unit));
+        V<Tag> extra = e.extra;
+        V<Tag> m_scale = c(1);
         if constexpr (is_coarse && shape == Shape::segment) {
-            extra = hn::Mul(extra, constant(unit * unit));
+            extra = hn::Mul(extra, c(on.unit * on.unit));
             m_scale = per_unit;
         } else if constexpr (is_coarse && shape == Shape::circle) {
             extra = hn::Mul(extra, per_unit);
         }
-        M<D> fit = hn::Lt(eta.value, constant(5e-4));
+        M<Tag> fit = hn::Lt(eta.value, c(5e-4));
         if constexpr (is_coarse) {
             // 1 / |m|^2 of a very short segment and such are beyond float.
-            const V<D> largest = hn::Max(square, strength);
-            fit = hn::And(
-                fit, hn::And(hn::Lt(eta.slope, constant(1e-2)), hn::Lt(largest, constant(1e12))));
-            if constexpr (shape != Shape::point) fit = hn::And(fit, hn::Lt(extra, constant(1e12)));
+            const V<Tag> largest = hn::Max(square, strength);
+            fit = hn::And(fit, hn::And(hn::Lt(eta.slope, c(1e-2)), hn::Lt(largest, c(1e12))));
+            if constexpr (shape != Shape::point) fit = hn::And(fit, hn::Lt(extra, c(1e12)));
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
 
-        const auto put = [&](V<D> x, std::size_t j) HWY_ATTR {
-            if constexpr (is_coarse) {
+        const auto put = [&](V<Tag> x, std::size_t j) HWY_ATTR {
+            if constexpr (sizeof(Real) != sizeof(hn::TFromD<Tag>)) {
                 const hn::Rebind<float, D> narrow;
                 hn::Store(hn::DemoteTo(narrow, x), narrow, column[j]);
             } else {
                 hn::Store(x, d, column[j]);
             }
         };
-        put(hn::Mul(cx, per_unit), 0);
-        put(hn::Mul(cy, per_unit), 1);
-        put(hn::Mul(cz, per_unit), 2);
-        put(hn::Mul(square, constant(argument_scale<kind>)), 3);
+        put(hn::Mul(arrivals.place.x, per_unit), 0);
+        put(hn::Mul(arrivals.place.y, per_unit), 1);
+        put(hn::Mul(arrivals.place.z, per_unit), 2);
+        put(hn::Mul(square, c(argument_scale<kind>)), 3);
         put(e.strength, 4);
-        put(hn::IfThenZeroElse(
-                kinked, hn::Mul(hn::Mul(constant(2 * slope_sign<kind>), e.strength), square)),
+        put(hn::IfThenZeroElse(kinked,
+                               hn::Mul(hn::Mul(c(2 * slope_sign<kind>), e.strength), square)),
             5);
         if constexpr (shape != Shape::point) {
             put(hn::Mul(e.m.x, m_scale), 6);
@@ -1124,70 +1235,115 @@ void enter_group(const Field& field, const Stretch& stretch, double scale, doubl
             put(hn::Mul(e.m.z, m_scale), 8);
             put(extra, 9);
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, enters, bits);
-        for (std::size_t k = 0; k < N; ++k) {
-            if ((bits[k / 8] >> (k % 8) & 1) == 0) continue;
-            const auto c = [&](std::size_t j) { return column[j][k]; };
-            elements[at] = static_cast<std::uint32_t>(active.element[i + k]);
-            entries[at] = {c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9)};
-            ++at;
-        }
+        const auto enter = [&](StageEntries<Real>& stage, M<Tag> which) HWY_ATTR {
+            const std::uint32_t bits = lane_bits(d, which);
+            for (std::size_t k = 0; k < N; ++k) {
+                if ((bits >> k & 1) == 0) continue;
+                const auto of = [&](std::size_t j) { return column[j][k]; };
+                stage.element[stage.size] = source.element(i + k);
+                stage.entry[stage.size] = {of(0), of(1), of(2), of(3), of(4),
+                                           of(5), of(6), of(7), of(8), of(9)};
+                ++stage.size;
+            }
+        };
+        enter(strong, is_strong);
+        if (weak != nullptr) enter(*weak, is_weak);
     }
+    constexpr std::size_t group = group_of(shape, kind);
+    strong.count[group] = static_cast<std::uint32_t>(strong.size - strong_before);
+    if (weak != nullptr) weak->count[group] = static_cast<std::uint32_t>(weak->size - weak_before);
     sums.error += sum_of(error);
     sums.slope += sum_of(slope);
     sums.magnitude += sum_of(magnitude);
     sums.full_slope += sum_of(full_slope);
     sums.rest_above += sum_of(rest_above);
     sums.rest_below += sum_of(rest_below);
+    sums.weak_above += sum_of(weak_above);
+    sums.weak_below += sum_of(weak_below);
+    sums.weak_slope += sum_of(weak_slope);
     sums.usable = sums.usable && hn::AllFalse(d, bad);
 }
 
-StageSums coarse(const Field& field, const Stretch& stretch, double scale, double unit, double cut,
+template <class Real>
+Entering entering(const Stretch& s, double unit) {
+    return {.u = sizeof(Real) == sizeof(float) ? 0x1p-24 : 0x1p-53,
+            .unit = unit,
+            .H = 0.5 * (s.end - s.begin) * more + s.end * s.spread * more,
+            .end = s.end,
+            .place_error = 0,
+            .least_rho = std::sqrt(double{least_square<Real>}) * unit * more};
+}
+
+StageSums coarse(const Field& field, const Stretch& stretch, double scale, const CoarseCuts& cuts,
                  const ActiveElements& active, Window& window) {
     StageSums sums;
-    window.coarse.resize(active.size());
-    window.coarse_count.fill(0);
-    window.coarse_element.resize(active.size());
-    std::size_t at = 0;
+    window.strong.clear();
+    window.weak.clear();
+    const Entering on = entering<float>(stretch, field.unit);
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
-        const std::size_t before = at;
-        enter_group<float, shape, kind>(field, stretch, scale, unit, cut, active, first, end,
-                                        window.middle, window.coarse.data(),
-                                        window.coarse_element.data(), at, sums);
-        window.coarse_count[group] = static_cast<std::uint32_t>(at - before);
+        const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
+        enter_group<float, shape, kind>(source, on, cuts, first, end, window.strong, &window.weak,
+                                        sums);
     });
-    window.coarse.resize(at);
+    return sums;
+}
+
+// c - M: beside what the elements' places are off by, and their own roundings, that of the middle's
+// place and of the difference; |place| <= |c - M| + |middle|.
+StageSums coarse_near(const NearElements& near, const NearStretch& stretch, double middle,
+                      const CoarseCuts& cuts, Window& window) {
+    StageSums sums;
+    window.strong.clear();
+    window.weak.clear();
+    const Reach<float> reach = reach_of(stretch);
+    const auto place = [&](double base, double axis) {
+        return static_cast<float>(base + middle * axis);
+    };
+    const Vec3<float> from{place(stretch.base.x, stretch.axis.x),
+                           place(stretch.base.y, stretch.axis.y),
+                           place(stretch.base.z, stretch.axis.z)};
+    const double size =
+        std::sqrt(double{from.x} * double{from.x} + double{from.y} * double{from.y} +
+                  double{from.z} * double{from.z});
+    const double end = (stretch.t_offset + stretch.end) * more;
+    const Entering on{.u = 0x1p-24,
+                      .unit = 1,
+                      .H = 0.5 * (stretch.end - stretch.begin) * more + end * stretch.spread * more,
+                      .end = end,
+                      .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
+                      .least_rho = std::sqrt(double{least_square<float>}) * more};
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        const std::size_t first = near.first[group], end_of_group = near.first[group + 1];
+        if (first == end_of_group) return;
+        const NearArrivals<shape> source{near, reach, from};
+        enter_group<float, shape, kind>(source, on, cuts, first, end_of_group, window.strong,
+                                        &window.weak, sums);
+    });
     return sums;
 }
 
 StageSums fine(const Field& field, const Stretch& stretch, double scale,
                const ActiveElements& active, Window& window) {
     StageSums sums;
-    window.fine.resize(active.size());
-    window.fine_count.fill(0);
-    window.fine_element.resize(active.size());
-    std::size_t at = 0;
+    window.fine.clear();
+    const Entering on = entering<double>(stretch, 1);
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
-        const std::size_t before = at;
-        enter_group<double, shape, kind>(field, stretch, scale, 1, 0, active, first, end,
-                                         window.middle, window.fine.data(),
-                                         window.fine_element.data(), at, sums);
-        window.fine_count[group] = static_cast<std::uint32_t>(at - before);
+        const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
+        enter_group<double, shape, kind>(source, on, {}, first, end, window.fine, nullptr, sums);
     });
-    window.fine.resize(at);
     return sums;
 }
 
 }  // namespace
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound,      bound_clusters, bend,   enter_near, bound_members,
-                                   bound_near, bend_near,      coarse, fine};
+    static const BundleSteps steps{bound,      bound_clusters, bend,       enter_near,
+                                   place_near, bound_members,  bound_near, bend_near,
+                                   coarse,     coarse_near,    fine};
     return steps;
 }
 

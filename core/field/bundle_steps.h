@@ -75,12 +75,18 @@ struct BendSums {
     double kinks = 0;           // and of |f'| of the elements whose f'' has none
 };
 
+struct CoarseCuts {
+    double strong = 0, weak = 0;
+};
+
 // For one stage of a window: sums over its entries and over what that stage leaves out.
 struct StageSums {
     double error = 0, slope = 0;  // of what rounding does to |F| and |F'|, and left-out |F'|
     double magnitude = 0;         // of the peaks
     double rest_above = 0, rest_below = 0;
     double full_slope = 0;  // of bounds of |F'| of all elements
+    // Of the weak entries: what they can add and take away, and of bounds of their |F'|.
+    double weak_above = 0, weak_below = 0, weak_slope = 0;
     bool usable = true;
 };
 
@@ -101,6 +107,10 @@ struct BundleSteps {
     void (*enter_near)(const Field& field, const Stretch& stretch, double middle,
                        const ActiveElements& active, NearElements& near);
 
+    // Their places anew, without what they were off by, relative to the place at another `middle`.
+    void (*place_near)(const Field& field, const Stretch& stretch, double middle,
+                       NearElements& near);
+
     // The members of clusters with |F| possibly above `cut`, likewise; `bundle` has the bundle's
     // origin and axis. Without `kept` only the sums.
     PeakSums (*bound_members)(const Field& field, const Stretch& bundle, double middle,
@@ -112,9 +122,14 @@ struct BundleSteps {
                            NearElements& kept);
     BendSums (*bend_near)(NearElements& near, const NearStretch& stretch);
 
-    // The window's coarse entries, in units of `unit`: those with peaks above `cut`.
-    StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale, double unit,
-                        double cut, const ActiveElements& active, Window& window);
+    // The window's coarse entries, in units: strong ones with peaks above the first cut, weak ones
+    // above the second.
+    StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale,
+                        const CoarseCuts& cuts, const ActiveElements& active, Window& window);
+    // The same, in float, and so are the sums. `stretch` is that of the window, relative to the
+    // same place as the elements.
+    StageSums (*coarse_near)(const NearElements& near, const NearStretch& stretch, double middle,
+                             const CoarseCuts& cuts, Window& window);
 
     // The window's fine entries: all.
     StageSums (*fine)(const Field& field, const Stretch& stretch, double scale,

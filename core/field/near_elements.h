@@ -16,6 +16,8 @@ struct NearElements {
     // As Field and BundleEntry have them; the bounds as ActiveElements.
     std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, extra, length;
     std::vector<float> least, most, peak, inverse;
+    // No place is off by more than 2^-23 of this beside its own rounding.
+    float magnitude = 0;
 
     static constexpr std::size_t room = 32;  // vectors are read and written whole
 

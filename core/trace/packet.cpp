@@ -117,9 +117,10 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::walking}, std::int32_t{Lanes::doubtful});
             }
-            const std::uint64_t walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
-            counts.evaluations += walked;
-            counts.element_evaluations += walked * window.coarse.size();
+            const Walked walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
+            counts.evaluations += walked.steps;
+            counts.element_evaluations +=
+                walked.steps * window.strong.size + walked.close_steps * window.weak.size;
             if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) {
                 return any(all, Lanes::walking);
             }
@@ -147,7 +148,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 fine += enclose(Lanes::undecided);
             }
             counts.evaluations += fine;
-            counts.element_evaluations += fine * window.fine.size();
+            counts.element_evaluations += fine * window.fine.size;
             if (surfaces != nullptr) {
                 found += surface_in(window, part, field, limit, *surfaces);
             }

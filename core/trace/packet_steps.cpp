@@ -92,16 +92,22 @@ HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
     kernels.template operator()<Shape::circle>();
 }
 
-template <class Tag, class Entries, class Counts>
-HWY_INLINE FieldValue<Tag> evaluate(Tag d, const Entries& entries, const Counts& counts,
+template <class Tag>
+HWY_INLINE void add(Tag d, const StageEntries<hn::TFromD<Tag>>& stage, const Vec3v<Tag>& p,
+                    const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
+    for_groups(stage.count, [&]<Shape shape, KernelKind kind>(std::size_t first,
+                                                              std::uint32_t count) HWY_ATTR {
+        add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum);
+    });
+}
+
+template <class Tag>
+HWY_INLINE FieldValue<Tag> evaluate(Tag d, const StageEntries<hn::TFromD<Tag>>& stage,
                                     double threshold, const Vec3v<Tag>& p,
                                     const Vec3v<Tag>& direction) {
     using Real = hn::TFromD<Tag>;
     FieldValue<Tag> sum{hn::Set(d, static_cast<Real>(-threshold)), hn::Zero(d)};
-    for_groups(counts,
-               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
-                   add_group<shape, kind>(d, entries.data() + first, count, p, direction, sum);
-               });
+    add(d, stage, p, direction, sum);
     return sum;
 }
 
@@ -154,12 +160,17 @@ struct Stage<float> {
     static constexpr int most_guesses = 6;
     static constexpr Lanes::State takes = Lanes::walking, leaves = Lanes::doubtful;
 
+    // Where f is farther below 0 than this many times what the strong entries leave open, they say
+    // enough.
+    static constexpr double far_below = 4;
+
     const Window& window;
     double unit;
 
-    const auto& entries() const { return window.coarse; }
-    const auto& counts() const { return window.coarse_count; }
-    const StageBounds& bounds() const { return window.coarse_bounds; }
+    const auto& entries() const { return window.strong; }
+    const StageBounds& bounds() const { return window.strong_bounds; }
+    const auto& more_entries() const { return window.weak; }
+    const StageBounds& close_bounds() const { return window.coarse_bounds; }
     double begin() const { return window.tau_begin; }
     double end() const { return window.tau_end; }
 };
@@ -176,7 +187,6 @@ struct Stage<double> {
     static constexpr double unit = 1;
 
     const auto& entries() const { return window.fine; }
-    const auto& counts() const { return window.fine_count; }
     const StageBounds& bounds() const { return window.fine_bounds; }
     double begin() const { return (window.begin - window.middle) * (1 + 0x1p-50); }
     double end() const { return (window.end - window.middle) * (1 + 0x1p-50); }
@@ -269,8 +279,8 @@ HWY_INLINE RayLanes<F> rays_of(F d, const Window& window, double unit, const Lan
 constexpr int most_steps = 48;
 
 template <class Tag>
-std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
-                         std::size_t begin_lane, std::size_t end_lane, Lanes& lanes) {
+Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
+                  std::size_t begin_lane, std::size_t end_lane, Lanes& lanes) {
     using Real = hn::TFromD<Tag>;
     using S = Stage<Real>;
     constexpr Real tight = S::tight;
@@ -278,9 +288,11 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
     const double unit = stage.unit;
     const std::size_t N = hn::Lanes(d);
     const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<Real>(value)); };
+    constexpr bool has_weak = sizeof(Real) == sizeof(float);
+    constexpr double widened = 1 + 0x1p-20;
     const StageBounds& bounds = stage.bounds();
-    const V<Tag> above = c(bounds.above * (1 + 0x1p-20)), below = c(bounds.below * (1 + 0x1p-20));
-    const V<Tag> slope_error = c(bounds.slope * (1 + 0x1p-20));
+    const V<Tag> all_above = c(bounds.above * widened), all_below = c(bounds.below * widened),
+                 all_slope_error = c(bounds.slope * widened);
     // f'' per unit^2, made larger by what the formulas may lose.
     const V<Tag> rise = c(window.rise * unit * unit * (1 + 2 * tight) + S::tiny);
     const V<Tag> fall = c(window.fall * unit * unit * (1 + 2 * tight) + S::tiny);
@@ -290,7 +302,7 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
     const V<Tag> settled = c(S::settled * stage.end());
     const V<Tag> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
     const V<Tag> least = c(least_square<Real>);
-    std::uint64_t steps = 0;
+    Walked walked;
 
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
         M<Tag> walking = lanes_in(d, S::takes, lanes, first, end_lane);
@@ -303,12 +315,29 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
         M<Tag> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
         V<Tag> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
         for (int step = 0; step < most_steps; ++step) {
-            steps += hn::CountTrue(d, hn::Or(walking, guessing));
+            const M<Tag> active = hn::Or(walking, guessing);
+            walked.steps += hn::CountTrue(d, active);
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
-            const FieldValue<Tag> value =
-                evaluate(d, stage.entries(), stage.counts(), threshold, p, direction);
+            FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction);
+            V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
+            if constexpr (has_weak) {
+                const M<Tag> close = hn::And(
+                    active, hn::Or(guessing,
+                                   hn::Not(hn::Lt(value.f, hn::Mul(c(-S::far_below), all_above)))));
+                if (stage.more_entries().size > 0 && !hn::AllFalse(d, close)) {
+                    walked.close_steps += hn::CountTrue(d, close);
+                    FieldValue<Tag> sum = value;
+                    add(d, stage.more_entries(), p, direction, sum);
+                    value = {hn::IfThenElse(close, sum.f, value.f),
+                             hn::IfThenElse(close, sum.slope, value.slope)};
+                    const StageBounds& closer = stage.close_bounds();
+                    above = hn::IfThenElse(close, c(closer.above * widened), above);
+                    below = hn::IfThenElse(close, c(closer.below * widened), below);
+                    slope_error = hn::IfThenElse(close, c(closer.slope * widened), slope_error);
+                }
+            }
 
             // A guess follows Newton, kept where the root is known to be.
             const V<Tag> onto_zero = hn::Mul(value.f, rough_inverse(d, value.slope));
@@ -419,11 +448,11 @@ std::uint64_t walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double thre
                              &lanes.t[first + k]);
         }
     }
-    return steps;
+    return walked;
 }
 
-std::uint64_t walk(const Window& window, double threshold, double unit, std::size_t first,
-                   std::size_t end, Lanes& lanes) {
+Walked walk(const Window& window, double threshold, double unit, std::size_t first, std::size_t end,
+            Lanes& lanes) {
     return walk_stage(F(), Stage<float>{window, unit}, threshold, first, end, lanes);
 }
 
@@ -438,7 +467,7 @@ std::uint64_t walk_again(const Window& window, double threshold, std::size_t fir
         }
         return 0;
     }
-    return walk_stage(D(), Stage<double>{window}, threshold, first, end, lanes);
+    return walk_stage(D(), Stage<double>{window}, threshold, first, end, lanes).steps;
 }
 
 constexpr std::size_t widest = 8;  // doubles in a vector of any target
@@ -527,8 +556,7 @@ HWY_INLINE Enclosed enclose_lanes(const Enclosing& task, const Vec3v<D>& directi
     for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
         steps += hn::CountTrue(d, open);
         const Vec3v<D> p = place(window, direction, m);
-        const FieldValue<D> value =
-            evaluate(d, window.fine, window.fine_count, task.threshold, p, direction);
+        const FieldValue<D> value = evaluate(d, window.fine, task.threshold, p, direction);
         const V<D> f_hi = hn::Add(value.f, c(bounds.above));
         const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
         const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
@@ -728,10 +756,10 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
         const V<D> zero = hn::Zero(d);
         SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         M<D> defined = hn::FirstN(d, N);
-        for_groups(window.fine_count, [&]<Shape shape, KernelKind kind>(
+        for_groups(window.fine.count, [&]<Shape shape, KernelKind kind>(
                                           std::size_t group, std::uint32_t count) HWY_ATTR {
-            add_surface<shape, kind>(d, window.fine.data() + group,
-                                     window.fine_element.data() + group, count, field, p, sum,
+            add_surface<shape, kind>(d, window.fine.entry.data() + group,
+                                     window.fine.element.data() + group, count, field, p, sum,
                                      defined);
         });
         const V<D> length = hn::Sqrt(dot<D>(sum.gradient, sum.gradient));
@@ -818,11 +846,13 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
                          hn::MulAdd(t, rays.direction.y, rays.middle.y),
                          hn::MulAdd(t, rays.direction.z, rays.middle.z)};
         LookSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
-        for_groups(window.coarse_count, [&]<Shape shape, KernelKind kind>(
-                                            std::size_t group, std::uint32_t count) HWY_ATTR {
-            add_look<shape, kind>(d, window.coarse.data() + group,
-                                  window.coarse_element.data() + group, count, field, p, sum);
-        });
+        for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
+            for_groups(stage->count, [&]<Shape shape, KernelKind kind>(
+                                         std::size_t group, std::uint32_t count) HWY_ATTR {
+                add_look<shape, kind>(d, stage->entry.data() + group,
+                                      stage->element.data() + group, count, field, p, sum);
+            });
+        }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));
         M<F> firm = hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * bounds.slope)));
         const V<F> inverse = hn::Div(hn::Set(d, -1.0F), length);

@@ -47,6 +47,11 @@ struct Looked {
     std::size_t wanted = 0, known = 0;
 };
 
+// Pairs of a lane and a step, and those of them that the weak entries took part in.
+struct Walked {
+    std::uint64_t steps = 0, close_steps = 0;
+};
+
 struct PacketSteps {
     // `count`, dx, dy, dz stand; fills fx, fy, fz. State: walking.
     void (*prepare)(Lanes& lanes);
@@ -56,12 +61,11 @@ struct PacketSteps {
 
     // Safe steps of every walking lane of first .. end from the window's begin to its end, in
     // float: lanes that come to a root become candidates, those that float cannot decide doubtful.
-    // Counts pairs of a lane and a step.
-    std::uint64_t (*walk)(const Window& window, double threshold, double unit, std::size_t first,
-                          std::size_t end, Lanes& lanes);
+    Walked (*walk)(const Window& window, double threshold, double unit, std::size_t first,
+                   std::size_t end, Lanes& lanes);
 
     // The same in double, from the window's begin, for the doubtful ones: they become candidates,
-    // walk on or are undecided.
+    // walk on or are undecided. Counts pairs of a lane and a step.
     std::uint64_t (*walk_again)(const Window& window, double threshold, std::size_t first,
                                 std::size_t end, Lanes& lanes);
 

@@ -60,7 +60,7 @@ TEST(Bundle, WhatIsLeftOutStaysInAsAnInterval) {
         const Vec3d p = place(bundle.origin, random.uniform(window.begin, window.end), d);
         double above = 0, below = 0;
         for (std::uint32_t i = 0; i < field.size(); ++i) {
-            const auto& kept = window.fine_element;
+            const auto& kept = window.fine.elements();
             if (std::find(kept.begin(), kept.end(), i) != kept.end()) continue;
             const double value = element_value(field, i, p) * scale;
             (value > 0 ? above : below) += std::abs(value);
@@ -82,7 +82,8 @@ TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
     double share = 0;
     for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window,
                            double scale, const Vec3d& d, Random& random) {
-        if (std::any_of(window.fine.begin(), window.fine.end(),
+        const std::span entries(window.fine.entry.data(), window.fine.size);
+        if (std::any_of(entries.begin(), entries.end(),
                         [](const BundleEntry<double>& entry) { return entry.slope == 0; })) {
             return;
         }

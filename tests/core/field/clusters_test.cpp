@@ -205,7 +205,7 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                                                          unit(random.in_cube(1)));
                     const Vec3d p = origin + random.uniform(window.begin, window.end) * d;
                     std::vector<bool> kept(field.size(), false);
-                    for (const std::uint32_t i : window.fine_element) kept[i] = true;
+                    for (const std::uint32_t i : window.fine.elements()) kept[i] = true;
                     double above = 0, below = 0;
                     for (std::size_t i = 0; i < field.size(); ++i) {
                         if (kept[i]) continue;
