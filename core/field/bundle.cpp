@@ -13,7 +13,7 @@ constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
 // Windows are halved until f'' could bend f by less than this share of T over one of them.
 constexpr double bend_limit = 8;
 
-constexpr double strong_cut_share = 0x1p-11, coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
+constexpr double strong_cut_share = 0x1p-8, coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
 constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than

@@ -162,7 +162,7 @@ struct Stage<float> {
 
     // Where f is farther below 0 than this many times what the strong entries leave open, they say
     // enough.
-    static constexpr double far_below = 4;
+    static constexpr double far_below = 2;
 
     const Window& window;
     double unit;
