@@ -64,7 +64,8 @@ struct BundleEntry {
     Real strength;        // b
     Real slope;  // 2 b / w^2, negative for Blinn's kernel: F' = slope |k'(s)| away . d, or with k';
                  // 0 where `kinked` counts it instead
-    Real mx, my, mz, extra;
+    Real unused[2];          // entries are written four numbers at a time
+    Real mx, my, mz, extra;  // not of points
 };
 
 // What bounds the sums of one stage, in units of its own: f = sum - T.

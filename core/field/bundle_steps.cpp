@@ -1,7 +1,9 @@
 #include "core/field/bundle_steps.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "core/field/bundle.h"
 #include "core/math/instruction_sets.h"
@@ -1151,7 +1153,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
     V<Tag> rest_above = zero, rest_below = zero;
     V<Tag> weak_above = zero, weak_below = zero, weak_slope = zero;
     M<Tag> bad = hn::FirstN(d, 0);
-    alignas(64) Real column[10][lanes_at_most] = {};
+    alignas(64) Real quads[3][4 * lanes_at_most];  // of each lane, side by side
     const std::size_t strong_before = strong.size, weak_before = weak != nullptr ? weak->size : 0;
     strong.make_room(end - first);
     if (weak != nullptr) weak->make_room(end - first);
@@ -1213,36 +1215,35 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
 
-        const auto put = [&](V<Tag> x, std::size_t j) HWY_ATTR {
+        const auto put = [&](V<Tag> x0, V<Tag> x1, V<Tag> x2, V<Tag> x3, std::size_t j) HWY_ATTR {
             if constexpr (sizeof(Real) != sizeof(hn::TFromD<Tag>)) {
                 const hn::Rebind<float, D> narrow;
-                hn::Store(hn::DemoteTo(narrow, x), narrow, column[j]);
+                hn::StoreInterleaved4(hn::DemoteTo(narrow, x0), hn::DemoteTo(narrow, x1),
+                                      hn::DemoteTo(narrow, x2), hn::DemoteTo(narrow, x3), narrow,
+                                      quads[j]);
             } else {
-                hn::Store(x, d, column[j]);
+                hn::StoreInterleaved4(x0, x1, x2, x3, d, quads[j]);
             }
         };
-        put(hn::Mul(arrivals.place.x, per_unit), 0);
-        put(hn::Mul(arrivals.place.y, per_unit), 1);
-        put(hn::Mul(arrivals.place.z, per_unit), 2);
-        put(hn::Mul(square, c(argument_scale<kind>)), 3);
-        put(e.strength, 4);
-        put(hn::IfThenZeroElse(kinked,
-                               hn::Mul(hn::Mul(c(2 * slope_sign<kind>), e.strength), square)),
-            5);
+        const V<Tag> full = hn::Mul(hn::Mul(c(2 * slope_sign<kind>), e.strength), square);
+        put(hn::Mul(arrivals.place.x, per_unit), hn::Mul(arrivals.place.y, per_unit),
+            hn::Mul(arrivals.place.z, per_unit), hn::Mul(square, c(argument_scale<kind>)), 0);
+        put(e.strength, hn::IfThenZeroElse(kinked, full), zero, zero, 1);
         if constexpr (shape != Shape::point) {
-            put(hn::Mul(e.m.x, m_scale), 6);
-            put(hn::Mul(e.m.y, m_scale), 7);
-            put(hn::Mul(e.m.z, m_scale), 8);
-            put(extra, 9);
+            put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale), extra,
+                2);
         }
         const auto enter = [&](StageEntries<Real>& stage, M<Tag> which) HWY_ATTR {
-            const std::uint32_t bits = lane_bits(d, which);
-            for (std::size_t k = 0; k < N; ++k) {
-                if ((bits >> k & 1) == 0) continue;
-                const auto of = [&](std::size_t j) { return column[j][k]; };
+            for (std::uint32_t bits = lane_bits(d, which); bits != 0; bits &= bits - 1) {
+                const auto k = static_cast<std::size_t>(std::countr_zero(bits));
                 stage.element[stage.size] = source.element(i + k);
-                stage.entry[stage.size] = {of(0), of(1), of(2), of(3), of(4),
-                                           of(5), of(6), of(7), of(8), of(9)};
+                static_assert(sizeof(BundleEntry<Real>) == 12 * sizeof(Real));
+                auto* const to = reinterpret_cast<Real*>(&stage.entry[stage.size]);
+                std::memcpy(to, quads[0] + 4 * k, 4 * sizeof(Real));
+                std::memcpy(to + 4, quads[1] + 4 * k, 4 * sizeof(Real));
+                if constexpr (shape != Shape::point) {
+                    std::memcpy(to + 8, quads[2] + 4 * k, 4 * sizeof(Real));
+                }
                 ++stage.size;
             }
         };
