@@ -72,6 +72,9 @@ ElementList list_of(const Field& field, const ElementList& parent, std::size_t c
 // More of them are not looked at one by one to see whether a list is empty.
 constexpr std::size_t most_tested = 8192;
 
+// Nor where their clusters add up to more than this times T: hardly any such list is empty.
+constexpr double most_tested_above = 1024;
+
 // The greatest that the clusters' members can add up to on the cone, times Field::scale.
 PeakSums peaks_of_members(const Field& field, const Cone& cone, const ActiveElements& clusters) {
     const Stretch rays = all_of(field, cone, {0.0, infinity<double>});
@@ -136,7 +139,8 @@ ElementList reaching_clusters(const Field& field, const ElementList& parent, con
                                                       : list;
     }
     // The clusters' members may be too far away all the same.
-    if (kept.size() * cluster_size < most_tested) {
+    if (kept.size() * cluster_size < most_tested &&
+        peaks.above < most_tested_above * field.threshold) {
         const PeakSums closer = peaks_of_members(field, cone, kept);
         const double slack = static_cast<double>(kept.size() * cluster_size + 64) * 0x1p-22 *
                              (closer.magnitude + field.threshold * field.scale);
