@@ -208,8 +208,7 @@ bool BundleField::splits(std::size_t depth, double t0, double t1) const {
 
 bool BundleField::parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                double t1) const {
-    return part.first_part != part.end_of_parts &&
-           bounded_by_depth_[depth].size() >= parts_elements &&
+    return !has_single_rays(part) && bounded_by_depth_[depth].size() >= parts_elements &&
            t1 * part.spread > parts_apart * (t1 - t0);
 }
 

@@ -54,6 +54,13 @@ struct BundlePart {
     std::uint32_t first_part = 0, end_of_parts = 0;  // after this one in the array; none: equal
 };
 
+// Those of a bundle's rays, component by component; null: not told.
+struct Directions {
+    const double *x = nullptr, *y = nullptr, *z = nullptr;
+
+    [[nodiscard]] Vec3d operator[](std::size_t k) const { return {x[k], y[k], z[k]}; }
+};
+
 // One element as the inner loop wants it. away = p - c - lambda m for a segment (c its end a),
 // lambda the foot p . m extra in 0..1; for a circle c is the centre, m the unit normal, extra the
 // radius.
@@ -137,13 +144,16 @@ class BundleField {
     // Calls visit(window, part) for windows from front to back until it returns false; f < 0
     // certainly holds on the parts of span() between them. parts[0] is the bundle. Which windows
     // there are depends on field, list, parts and tolerance alone. Those that
-    // wanted(part, begin, end) denies are passed over. When `budget` stretches of t have been
-    // bounded, one for all rays that is not `coarse_usable` and begins at 0 is the last.
+    // wanted(part, begin, end) denies are passed over. If there are parts, each ray of one that has
+    // none may be a part of its own, whose axis is that of the ray in `rays`. When `budget`
+    // stretches of t have been bounded, one for all rays that is not `coarse_usable` and begins at
+    // 0 is the last.
     template <class Wanted, class Visit>
-    void for_windows(std::span<const BundlePart> parts, const Wanted& wanted, int budget,
-                     const Visit& visit) {
+    void for_windows(std::span<const BundlePart> parts, const Directions& rays,
+                     const Wanted& wanted, int budget, const Visit& visit) {
         left_ = budget;
         parts_ = parts;
+        rays_ = rays;
         if (!is_empty(span_)) descend(0, parts[0], span_.lo, span_.hi, wanted, visit);
     }
 
@@ -196,6 +206,14 @@ class BundleField {
     void bend(const Stretch& on, Bounded& bounded) const;
     void complete(const Stretch& on, const Bounded& bounded, Window& window);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
+    // It has no parts but its rays.
+    [[nodiscard]] static bool has_single_rays(const BundlePart& part) {
+        return part.first_part == part.end_of_parts;
+    }
+    [[nodiscard]] bool is_divisible(const BundlePart& part) const {
+        return !has_single_rays(part) ||
+               (parts_.size() > 1 && part.spread > 0 && rays_.x != nullptr);
+    }
     [[nodiscard]] bool parts_differ(std::size_t depth, const BundlePart& part, double t0,
                                     double t1) const;
     void finish(std::size_t depth, const BundlePart& part, double t0, double t1);
@@ -217,11 +235,22 @@ class BundleField {
         const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
         if (!bound(depth, part, t0 - pad, t1 + pad, is_long)) return true;
         if (!is_long) bend(part, t0 - pad, t1 + pad, bounded_by_depth_[depth]);
-        if (is_long || (divisible && splits(depth, t0, t1))) {
+        const bool divides = is_long || (divisible && splits(depth, t0, t1));
+        const bool has_parts = depth < greatest_depth && is_divisible(part);
+        // Where the rays are farther apart than the stretch is long, to halve it says less of each
+        // of them than to part them.
+        if (divides && !(has_parts && t1 * part.spread > t1 - t0)) {
             return descend(depth + 1, part, t0, middle, wanted, visit) &&
                    descend(depth + 1, part, middle, t1, wanted, visit);
         }
-        if (parts_differ(depth, part, t0, t1)) {
+        if (has_parts && (divides || parts_differ(depth, part, t0, t1))) {
+            if (has_single_rays(part)) {
+                for (std::uint32_t k = part.first; k < part.end; ++k) {
+                    const BundlePart ray{.axis = rays_[k], .first = k, .end = k + 1};
+                    if (!descend(depth + 1, ray, t0, t1, wanted, visit)) return false;
+                }
+                return true;
+            }
             for (std::uint32_t k = part.first_part; k < part.end_of_parts; ++k) {
                 if (!descend(depth + 1, parts_[k], t0, t1, wanted, visit)) return false;
             }
@@ -234,6 +263,7 @@ class BundleField {
     const Field* field_ = nullptr;
     Vec3d origin_;
     std::span<const BundlePart> parts_;
+    Directions rays_;
     Bounded list_;
     ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded near_clusters_;

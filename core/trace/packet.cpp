@@ -9,9 +9,9 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Stretches of t that are bounded for one bundle and for each of its parts; if that is not enough,
-// its rays are better traced one by one.
-constexpr int budget = 1024, budget_of_part = 256;
+// Stretches of t that are bounded for one bundle, for each of its parts and for the rays of these;
+// if that is not enough, the rays are better traced one by one.
+constexpr int budget = 1024, budget_of_part = 256, budget_of_rays = 8192;
 
 // The t up to which the places of core/field/bundle.h are close enough for normals and colours:
 // they are off by 2^-98 of it.
@@ -100,8 +100,11 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     std::size_t found = 0;
     const BundlePart& all = parts_[0];
     bundle_field_.for_windows(
-        parts_, [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
-        budget + static_cast<int>(parts_.size()) * budget_of_part,
+        parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
+        [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
+        parts_.size() == 1
+            ? budget + budget_of_part
+            : budget + static_cast<int>(parts_.size()) * budget_of_part + budget_of_rays,
         [&](Window& window, const BundlePart& part) {
             if (!window.coarse_usable) {
                 for (std::size_t k = part.first; k < part.end; ++k) {
@@ -175,7 +178,7 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         lanes_.t[k] = m[k];
     }
     bundle_field_.for_windows(
-        parts_,
+        parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
         [&](const BundlePart& part, double t0, double t1) {
             return std::any_of(m.begin() + part.first, m.begin() + part.end,
                                [=](double t) { return t >= t0 && t < t1 && t < limit; });

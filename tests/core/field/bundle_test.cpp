@@ -38,7 +38,7 @@ void for_random_windows(const Visit& visit) {
         const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
         const auto every = [](const BundlePart&, double, double) { return true; };
         const int no_end = std::numeric_limits<int>::max();
-        along.for_windows(parts, every, no_end, [&](Window& window, const BundlePart&) {
+        along.for_windows(parts, {}, every, no_end, [&](Window& window, const BundlePart&) {
             along.complete(window);
             for (int n = 0; n < 4; ++n) {
                 visit(field, bundle, window, scale,

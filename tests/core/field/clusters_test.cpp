@@ -192,7 +192,7 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
             };
             std::vector<Stretch> seen;
             along.for_windows(
-                parts, [](const BundlePart&, double, double) { return true; },
+                parts, {}, [](const BundlePart&, double, double) { return true; },
                 std::numeric_limits<int>::max(),
                 [&](Window& window, const BundlePart& part) {
                     const auto number = static_cast<std::size_t>(&part - parts.data());

@@ -244,15 +244,16 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     window.rise = window.fall = 1;
     // f falls from the window's begin on, towards a point of negative strength at its end.
     window.strong.entry.push_back({.cx = 0.5f,
-                                     .cy = 0,
-                                     .cz = 0,
-                                     .inverse_square = 1,
-                                     .strength = -1e12f,
-                                     .slope = 1e20f,
-                                     .mx = 0,
-                                     .my = 0,
-                                     .mz = 0,
-                                     .extra = 0});
+                                   .cy = 0,
+                                   .cz = 0,
+                                   .inverse_square = 1,
+                                   .strength = -1e12f,
+                                   .slope = 1e20f,
+                                   .unused = {},
+                                   .mx = 0,
+                                   .my = 0,
+                                   .mz = 0,
+                                   .extra = 0});
     window.strong.count[0] = 1;
     window.strong.size = 1;
     window.coarse_usable = true;
