@@ -60,9 +60,9 @@ double milliseconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-// Whether nothing but colours, lights and background tells the two scenes apart.
-bool same_geometry(const Scene& a, const Scene& b) {
-    if (a.threshold != b.threshold || a.elements.size() != b.elements.size()) return false;
+// Whether nothing but colours, lights, background and threshold tells the two scenes apart.
+bool same_elements(const Scene& a, const Scene& b) {
+    if (a.elements.size() != b.elements.size()) return false;
     for (std::size_t i = 0; i < a.elements.size(); ++i) {
         const Element &p = a.elements[i], &q = b.elements[i];
         if (!(p.skeleton == q.skeleton && p.kernel == q.kernel && p.strength == q.strength &&
@@ -70,6 +70,11 @@ bool same_geometry(const Scene& a, const Scene& b) {
             return false;
     }
     return true;
+}
+
+// Whether nothing but colours, lights and background does.
+bool same_geometry(const Scene& a, const Scene& b) {
+    return a.threshold == b.threshold && same_elements(a, b);
 }
 
 // A picture in the making, or made: what the workers have delivered of it.
@@ -86,7 +91,7 @@ struct Board {
     std::vector<std::size_t> changed;      // tiles since the last poll, each once
     std::vector<std::uint8_t> is_changed;  // by tile: 1: its colours, 3: its depth too
     std::vector<std::array<std::uint16_t, 5>> tile_pixels;
-    std::array<std::uint64_t, 5> pixels{};  // by Status, of all tiles
+    std::array<std::uint64_t, 5> pixels{};            // by Status, of all tiles
     std::size_t tiles_missing = 0, tiles_coarse = 0;  // those that show nothing; no fine blocks
     std::uint64_t pixels_done = 0;
     std::uint64_t tiles_traced = 0;
@@ -189,8 +194,7 @@ struct Board {
         std::fill_n(&depth[first], columns, std::numeric_limits<float>::infinity());
         if (misses) return;
         for (std::size_t p = first; p < first + columns; ++p)
-            if (possibly_hit(frame.status[p]))
-                depth[p] = static_cast<float>(midpoint(frame.t(p)));
+            if (possibly_hit(frame.status[p])) depth[p] = static_cast<float>(midpoint(frame.t(p)));
     }
 
     void shows(std::size_t tile, int pixels_a_side, bool differs = true) {
@@ -421,6 +425,7 @@ class RenderSession::Director {
             if (!fault.empty()) {
                 canvas_.reset();  // whatever state it is in
                 tiles_.clear();
+                field_.reset();
                 board_.number = number;
                 board_.final = false;
                 board_.fault = fault;
@@ -459,9 +464,14 @@ class RenderSession::Director {
             recolored_.clear();
             is_shaded_ = true;
         }
-        if (going_on && std::find(kept.begin(), kept.end(), 1) != kept.end()) {
+        if (going_on && (is_stretched_ || std::find(kept.begin(), kept.end(), 1) != kept.end())) {
             settings_.wake();
             going_on = hand_rests(request);
+            if (going_on && is_stretched_) {
+                compile_anew(*request.scene);
+                canvas_->forget_lists();
+                kept.assign(kept.size(), 1);
+            }
             if (going_on) {
                 // in plain order: no tile is shown coarser than it is
                 going_on = run(Task::trace_and_shade, Order::plain, request, kept);
@@ -511,12 +521,13 @@ class RenderSession::Director {
         return frame_job.finish().complete;
     }
 
-    // The selected tiles of which all pixels have come are the picture's own now.
+    // The selected tiles of which all pixels have come are the picture's own now, or nearly so: its
+    // colours in float may be off by one where the hierarchy is another.
     void settle(const std::vector<std::uint8_t>& selected) {
         const std::lock_guard lock(mutex_);
         for (std::size_t tile = 0; tile < selected.size(); ++tile)
             if (selected[tile] != 0 && board_.done[tile] == canvas_->grid.tiles.rect(tile).area())
-                tiles_[tile] = Tile::exact;
+                tiles_[tile] = is_stretched_ ? Tile::kept : Tile::exact;
     }
 
     // False: something else is wanted before.
@@ -526,6 +537,36 @@ class RenderSession::Director {
                                       [this] { return stop_ || wanted_; });
     }
 
+    // Makes field_ that of the scene; whether the lists of the view's tiles, if they are of the
+    // scene `before` (null: none), still hold.
+    bool take_scene(const Scene* before, const Scene& scene, bool same_view) {
+        const bool has_field = field_ != nullptr && before != nullptr;
+        // A whole picture would have to be made anew when the hand rests.
+        const bool spares_rebuilding = same_view || !is_stretched_;
+        const Refit refitted =
+            has_field && spares_rebuilding ? refit(*field_, *before, scene) : Refit::impossible;
+        if (refitted == Refit::impossible) {
+            compile_anew(scene);
+            return false;
+        }
+        is_stretched_ = is_stretched_ || refitted == Refit::stretched;
+        const double share = scene.threshold / lists_threshold_;
+        if (same_view && same_elements(*before, scene) && share > 0.5 && share < 2) {
+            canvas_->forget_empty_lists();
+            return true;
+        }
+        lists_threshold_ = scene.threshold;
+        return false;
+    }
+
+    void compile_anew(const Scene& scene) {
+        field_.reset();
+        field_ = std::make_shared<Field>(compile(scene));
+        picture_.field = field_;
+        is_stretched_ = false;
+        lists_threshold_ = scene.threshold;
+    }
+
     // Makes picture_, canvas_ and tiles_ ready for the request; what there is to do.
     Task prepare(const PictureRequest& request) {
         const PictureRequest before = std::exchange(traced_, request);
@@ -533,9 +574,7 @@ class RenderSession::Director {
         const bool same_view = same_size && before.camera == request.camera;
         const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
         if (same_view && whole && same_geometry(*before.scene, *request.scene)) {
-            Field field = *picture_.field;
-            const std::vector<std::uint32_t> changed = recolor(field, *request.scene);
-            picture_.field = std::make_shared<const Field>(std::move(field));
+            const std::vector<std::uint32_t> changed = recolor(*field_, *request.scene);
             std::vector<std::uint32_t> all;
             std::set_union(recolored_.begin(), recolored_.end(), changed.begin(), changed.end(),
                            std::back_inserter(all));
@@ -544,7 +583,7 @@ class RenderSession::Director {
             picture_.lighting = make_lighting(*request.scene, picture_.view);
             return Task::shade;
         }
-        picture_.field = std::make_shared<const Field>(compile(*request.scene));
+        const bool keeps_lists = take_scene(before.scene.get(), *request.scene, same_view);
         if (!same_view) {
             picture_.view = make_view(request.camera);
             directions_.clear();
@@ -556,10 +595,11 @@ class RenderSession::Director {
         picture_.options.tolerance = settings_.tolerance;
         if (!same_size) {
             canvas_.reset();  // the memory of one is enough
-            canvas_ = std::make_unique<Canvas>(request.size.width, request.size.height, false, true);
+            canvas_ =
+                std::make_unique<Canvas>(request.size.width, request.size.height, false, true);
             tiles_.resize(canvas_->grid.tiles.size());
         }
-        canvas_->forget_lists();
+        if (!keeps_lists) canvas_->forget_lists();
 
         std::optional<std::vector<std::uint8_t>> touched;
         // where the shading of new colours was cut short, tiles show old ones
@@ -629,6 +669,10 @@ class RenderSession::Director {
 
     // The director's thread alone; the canvas is the job's while there is one.
     std::unique_ptr<Canvas> canvas_;
+    std::shared_ptr<Field> field_;  // that of picture_; changed while there is no job
+    // Its hierarchy is not what compile would make of the scene: pictures are not final yet.
+    bool is_stretched_ = false;
+    double lists_threshold_ = 0;  // T for which the canvas' lists are
     Picture picture_;
     PictureRequest traced_;  // what picture_, canvas_ and tiles_ are of
     std::vector<Tile> tiles_;

@@ -50,7 +50,10 @@ std::size_t count_positive(const Field& field) {
                                                   [](double b) { return b > 0; }));
 }
 
-double reach(const Field& field, std::size_t i, std::size_t positive) {
+namespace {
+
+// An s at and beyond which b k(s) n < T certainly holds; below 0 where it does everywhere.
+double level(const Field& field, std::size_t i, std::size_t positive) {
     const double n = static_cast<double>(positive);
     if (field.strength[i] < 0 || certainly_low(field, i, 0, n)) return -1;
     // The least s found for which the field is certainly low: Blinn's has a closed form, to be
@@ -70,7 +73,18 @@ double reach(const Field& field, std::size_t i, std::size_t positive) {
             (certainly_low(field, i, middle, n) ? s : lo) = middle;
         }
     }
-    return next_up(std::sqrt(s) * field.width[i] * (1 + 8 * u));
+    return s;
+}
+
+double radius_at(double level, double width) {
+    return next_up(std::sqrt(level) * width * (1 + 8 * u));
+}
+
+}  // namespace
+
+double reach(const Field& field, std::size_t i, std::size_t positive) {
+    const double s = level(field, i, positive);
+    return s < 0 ? -1 : radius_at(s, field.width[i]);
 }
 
 Box3 skeleton_box(const Field& field, std::size_t i) {
@@ -100,16 +114,36 @@ Box3 skeleton_box(const Field& field, std::size_t i) {
 
 Box3 box_of_reach(const Field& field) {
     const std::size_t positive = count_positive(field);
-    Box3 box;
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        const double radius = reach(field, i, positive);
-        if (radius < 0) continue;
-        Box3 ball = skeleton_box(field, i);
+    const auto with_margin = [](Box3 box, double radius) {
         for (std::size_t k = 0; k < 3; ++k) {
-            ball.lo[k] = sub_down(ball.lo[k], radius);
-            ball.hi[k] = add_up(ball.hi[k], radius);
+            box.lo[k] = sub_down(box.lo[k], radius);
+            box.hi[k] = add_up(box.hi[k], radius);
         }
-        box.include(ball);
+        return box;
+    };
+    Box3 box;
+    for (std::size_t group = 0; group < field_groups; ++group) {
+        const std::size_t first = field.first[group], end = field.first[group + 1];
+        if (first == end) continue;
+        const auto strengths = field.strength.begin();
+        const auto strongest = static_cast<std::size_t>(
+            std::max_element(strengths + static_cast<std::ptrdiff_t>(first),
+                             strengths + static_cast<std::ptrdiff_t>(end)) -
+            strengths);
+        const double highest = level(field, strongest, positive);
+        if (highest < 0) continue;
+        for (std::size_t i = first; i < end; ++i) {
+            // What the strongest would reach from here is in the box already: most are so inside.
+            const Box3 skeleton = skeleton_box(field, i);
+            const Box3 most = with_margin(skeleton, radius_at(highest, field.width[i]));
+            bool inside = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                inside = inside && most.lo[k] >= box.lo[k] && most.hi[k] <= box.hi[k];
+            }
+            if (inside) continue;
+            const double radius = reach(field, i, positive);
+            if (radius >= 0) box.include(with_margin(skeleton, radius));
+        }
     }
     return box;
 }

@@ -16,14 +16,6 @@ constexpr double more = 1 + 0x1p-40;
 
 double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-Vec3d place_of(const Element& element) {
-    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) return point->position;
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        return 0.5 * segment->a + 0.5 * segment->b;
-    }
-    return std::get<CircleSkeleton>(element.skeleton).center;
-}
-
 // 10 bits, two zeros between each and the next.
 std::uint32_t spread_bits(std::uint32_t x) {
     x = (x | x << 16) & 0x030000ff;
@@ -70,44 +62,62 @@ std::uint32_t Clusters::of(std::uint32_t element) const {
                                       first.begin() - 1);
 }
 
+Vec3d place_of(const Element& element) {
+    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) return point->position;
+    if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
+        return 0.5 * segment->a + 0.5 * segment->b;
+    }
+    return std::get<CircleSkeleton>(element.skeleton).center;
+}
+
+void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
+    const std::size_t first = clusters.first[cluster], end = clusters.first[cluster + 1];
+    Box3 box;
+    double above = 0, below = 0, widest = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const Vec3d middle = ball_of(field, i).first;
+        box.include({middle, middle});
+        (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+        widest = std::max(widest, field.width[i]);
+    }
+    const Vec3d center = 0.5 * box.lo + 0.5 * box.hi;
+    double radius = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const auto [middle, reach] = ball_of(field, i);
+        radius = std::max(radius, (length(middle - center) + reach) * more);
+        if (field.suits_float) put_member(field, i, center, clusters.members);
+    }
+    clusters.x[cluster] = center.x;
+    clusters.y[cluster] = center.y;
+    clusters.z[cluster] = center.z;
+    clusters.radius[cluster] = radius;
+    clusters.above[cluster] = above * more;
+    clusters.below[cluster] = below * more;
+    clusters.inverse_square[cluster] = 1 / (widest * widest) * (1 - 0x1p-40);
+}
+
 Clusters clusters_of(const Field& field) {
     Clusters clusters;
     if (!field.compact || field.size() < least_clustered) return clusters;
-    if (field.suits_float) clusters.members.make_room(field.size());
     for (std::size_t group = 0; group < field_groups; ++group) {
-        clusters.first_of_group[group] = static_cast<std::uint32_t>(clusters.size());
-        for (std::size_t first = field.first[group]; first < field.first[group + 1];
+        clusters.first_of_group[group] = static_cast<std::uint32_t>(clusters.first.size());
+        for (std::uint32_t first = field.first[group]; first < field.first[group + 1];
              first += cluster_size) {
-            const std::size_t end =
-                std::min<std::size_t>(first + cluster_size, field.first[group + 1]);
-            Box3 box;
-            double above = 0, below = 0, widest = 0;
-            for (std::size_t i = first; i < end; ++i) {
-                const Vec3d middle = ball_of(field, i).first;
-                box.include({middle, middle});
-                (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
-                widest = std::max(widest, field.width[i]);
-            }
-            const Vec3d center = 0.5 * box.lo + 0.5 * box.hi;
-            double radius = 0;
-            for (std::size_t i = first; i < end; ++i) {
-                const auto [middle, reach] = ball_of(field, i);
-                radius = std::max(radius, (length(middle - center) + reach) * more);
-                if (field.suits_float) put_member(field, i, center, clusters.members);
-            }
-            clusters.first.push_back(static_cast<std::uint32_t>(first));
-            clusters.x.push_back(center.x);
-            clusters.y.push_back(center.y);
-            clusters.z.push_back(center.z);
-            clusters.radius.push_back(radius);
-            clusters.above.push_back(above * more);
-            clusters.below.push_back(below * more);
-            clusters.inverse_square.push_back(1 / (widest * widest) * (1 - 0x1p-40));
+            clusters.first.push_back(first);
         }
     }
+    const std::size_t count = clusters.first.size();
+    clusters.first_of_group[field_groups] = static_cast<std::uint32_t>(count);
     clusters.first.push_back(static_cast<std::uint32_t>(field.size()));
-    clusters.first_of_group[field_groups] = static_cast<std::uint32_t>(clusters.size());
-    if (field.suits_float) clusters.members.first = field.first;
+    for (auto* column : {&clusters.x, &clusters.y, &clusters.z, &clusters.radius, &clusters.above,
+                         &clusters.below, &clusters.inverse_square}) {
+        column->resize(count);
+    }
+    if (field.suits_float) {
+        clusters.members.make_room(field.size());
+        clusters.members.first = field.first;
+    }
+    for (std::size_t cluster = 0; cluster < count; ++cluster) fit(field, cluster, clusters);
     return clusters;
 }
 
@@ -122,16 +132,20 @@ void sort_by_place(const Scene& scene, std::vector<std::uint32_t>& elements) {
         // Not a number, or beyond them, where the box is empty or too large.
         return share > 0 && share <= 1 ? static_cast<std::uint32_t>(share * 1023) : 0;
     };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> keys;
+    // The key above the index: one number to compare.
+    std::vector<std::uint64_t> keys;
     keys.reserve(elements.size());
     for (const std::uint32_t i : elements) {
         const Vec3d place = place_of(scene.elements[i]);
-        keys.emplace_back(spread_bits(cell(place.x, 0)) | spread_bits(cell(place.y, 1)) << 1 |
-                              spread_bits(cell(place.z, 2)) << 2,
-                          i);
+        const std::uint32_t key = spread_bits(cell(place.x, 0)) |
+                                  spread_bits(cell(place.y, 1)) << 1 |
+                                  spread_bits(cell(place.z, 2)) << 2;
+        keys.push_back(std::uint64_t{key} << 32 | i);
     }
     std::sort(keys.begin(), keys.end());
-    for (std::size_t k = 0; k < keys.size(); ++k) elements[k] = keys[k].second;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        elements[k] = static_cast<std::uint32_t>(keys[k]);
+    }
 }
 
 }  // namespace ivory

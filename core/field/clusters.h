@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "core/field/near_elements.h"
+#include "core/math/vec3.h"
 
 namespace ivory {
 
+struct Element;
 struct Field;
 struct Scene;
 
@@ -38,10 +40,17 @@ struct Clusters {
     [[nodiscard]] bool empty() const { return x.empty(); }
     // The cluster that holds an element.
     [[nodiscard]] std::uint32_t of(std::uint32_t element) const;
+    friend bool operator==(const Clusters&, const Clusters&) = default;
 };
 
 // Those of a compact field with that many elements; of others none.
 [[nodiscard]] Clusters clusters_of(const Field& field);
+
+// The bounds of one of them anew, and its members, after elements of the field have changed.
+void fit(const Field& field, std::size_t cluster, Clusters& clusters);
+
+// Where an element is, for that order.
+[[nodiscard]] Vec3d place_of(const Element& element);
 
 // Indices of elements of the scene, put in the order of their places along a curve through space
 // (Morton 1966): those that follow each other are near each other. Equal places keep their order.

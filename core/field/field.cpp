@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/field/bounding_box.h"
 #include "core/math/direction.h"
@@ -31,14 +32,15 @@ void make_room(Field& field, std::size_t count) {
          {&field.strength, &field.width, &field.ax, &field.ay, &field.az, &field.bx, &field.by,
           &field.bz, &field.radius, &field.mx, &field.my, &field.mz, &field.extra, &field.length,
           &field.inverse_width, &field.inverse_square, &field.cut}) {
-        column->reserve(count);
+        column->resize(count);
     }
-    field.shape.reserve(count);
-    field.kernel.reserve(count);
-    field.source.reserve(count);
+    field.shape.resize(count);
+    field.kernel.resize(count);
+    field.source.resize(count);
 }
 
-void add(Field& field, const Element& element, std::size_t source) {
+// All that an element says by itself, but for its colour.
+void put(Field& field, std::size_t i, const Element& element) {
     Vec3d a, b, m;
     double radius = 0, length = 0, extra = 0;
     if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
@@ -57,25 +59,85 @@ void add(Field& field, const Element& element, std::size_t source) {
         m = unit(b);
         radius = extra = circle.radius;
     }
-    field.shape.push_back(static_cast<Shape>(element.skeleton.index()));
-    field.kernel.push_back(element.kernel);
-    field.strength.push_back(element.strength);
-    field.width.push_back(element.width);
-    field.ax.push_back(a.x);
-    field.ay.push_back(a.y);
-    field.az.push_back(a.z);
-    field.bx.push_back(b.x);
-    field.by.push_back(b.y);
-    field.bz.push_back(b.z);
-    field.radius.push_back(radius);
-    field.source.push_back(static_cast<std::uint32_t>(source));
-    field.mx.push_back(m.x);
-    field.my.push_back(m.y);
-    field.mz.push_back(m.z);
-    field.extra.push_back(extra);
-    field.length.push_back(length);
-    field.inverse_width.push_back(1 / element.width);
-    field.inverse_square.push_back(1 / (element.width * element.width));
+    field.shape[i] = static_cast<Shape>(element.skeleton.index());
+    field.kernel[i] = element.kernel;
+    field.strength[i] = element.strength;
+    field.width[i] = element.width;
+    field.ax[i] = a.x;
+    field.ay[i] = a.y;
+    field.az[i] = a.z;
+    field.bx[i] = b.x;
+    field.by[i] = b.y;
+    field.bz[i] = b.z;
+    field.radius[i] = radius;
+    field.mx[i] = m.x;
+    field.my[i] = m.y;
+    field.mz[i] = m.z;
+    field.extra[i] = extra;
+    field.length[i] = length;
+    field.inverse_width[i] = 1 / element.width;
+    field.inverse_square[i] = 1 / (element.width * element.width);
+}
+
+void put_color(Field& field, std::size_t i, const Color& color) {
+    field.color[i] = color;
+    field.red[i] = static_cast<float>(color.x);
+    field.green[i] = static_cast<float>(color.y);
+    field.blue[i] = static_cast<float>(color.z);
+}
+
+void look_for_one_color(Field& field) {
+    field.one_color = std::all_of(field.color.begin(), field.color.end(),
+                                  [&](const Color& c) { return c == field.color.front(); });
+}
+
+// What follows from threshold and elements, but for clusters and boxes.
+void sum_up(Field& field) {
+    // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
+    // support ends at 1.
+    const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
+    double of_strength = 0, of_cut = 0;  // neighbours are often equally strong
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        const double strength = std::abs(field.strength[i]);
+        if (strength != of_strength) {
+            const double least = share / strength;
+            of_strength = strength;
+            of_cut = least < 1 ? std::min(-std::log(least), 700.0) : 0;
+        }
+        field.cut[i] = field.kernel[i] == KernelKind::blinn ? of_cut : 1;
+    }
+    field.least_width =
+        field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());
+    field.greatest_width =
+        field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
+    field.greatest_size = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        field.greatest_size =
+            std::max(field.greatest_size, std::max(field.length[i], field.radius[i]));
+    }
+    field.compact = is_compact(field);
+    field.unit = field.scale = 1;
+    field.suits_float = false;
+    if (!field.compact) return;
+    constexpr double most_in_float = 0x1p9;
+    int exponent = 0;
+    std::frexp(field.threshold, &exponent);
+    field.scale = std::ldexp(1.0, -exponent);
+    std::frexp(field.greatest_width, &exponent);
+    field.unit = std::ldexp(1.0, exponent - 1);
+    field.suits_float = field.greatest_width < most_in_float * field.least_width &&
+                        field.greatest_size < most_in_float * field.greatest_width;
+}
+
+void put_boxes(Field& field) {
+    field.skeletons = {};
+    for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
+    field.reach_box = box_of_reach(field);
+    field.box = shrunk_box(field, field.reach_box);
+}
+
+bool same_numbers(const Element& a, const Element& b) {
+    return a.skeleton == b.skeleton && a.strength == b.strength && a.width == b.width;
 }
 
 }  // namespace
@@ -93,46 +155,68 @@ Field compile(const Scene& scene) {
         ++visible;
     }
     make_room(field, visible);
+    std::size_t count = 0;
     for (std::size_t group = 0; group < field_groups; ++group) {
-        field.first[group] = static_cast<std::uint32_t>(field.size());
+        field.first[group] = static_cast<std::uint32_t>(count);
         if (visible >= least_clustered) sort_by_place(scene, groups[group]);
-        for (const std::uint32_t i : groups[group]) add(field, scene.elements[i], i);
+        for (const std::uint32_t i : groups[group]) {
+            field.source[count] = i;
+            put(field, count++, scene.elements[i]);
+        }
     }
-    field.first[field_groups] = static_cast<std::uint32_t>(field.size());
+    field.first[field_groups] = static_cast<std::uint32_t>(count);
     recolor(field, scene);
-    // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
-    // support ends at 1.
-    const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        const double least = share / std::abs(field.strength[i]);
-        field.cut.push_back(field.kernel[i] != KernelKind::blinn ? 1
-                            : least < 1                          ? std::min(-std::log(least), 700.0)
-                                                                 : 0);
-    }
-    field.least_width =
-        field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());
-    field.greatest_width =
-        field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
-    for (std::size_t i = 0; i < field.size(); ++i) {
-        field.greatest_size =
-            std::max(field.greatest_size, std::max(field.length[i], field.radius[i]));
-    }
-    field.compact = is_compact(field);
-    if (field.compact) {
-        constexpr double most_in_float = 0x1p9;
-        int exponent = 0;
-        std::frexp(field.threshold, &exponent);
-        field.scale = std::ldexp(1.0, -exponent);
-        std::frexp(field.greatest_width, &exponent);
-        field.unit = std::ldexp(1.0, exponent - 1);
-        field.suits_float = field.greatest_width < most_in_float * field.least_width &&
-                            field.greatest_size < most_in_float * field.greatest_width;
-    }
+    sum_up(field);
     field.clusters = clusters_of(field);
-    for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
-    field.reach_box = box_of_reach(field);
-    field.box = shrunk_box(field, field.reach_box);
+    put_boxes(field);
     return field;
+}
+
+Refit refit(Field& field, const Scene& before, const Scene& after) {
+    constexpr std::size_t most_in_clusters = 64;
+    if (before.elements.size() != after.elements.size()) return Refit::impossible;
+    std::vector<std::uint32_t> changed;  // in the scene
+    bool is_moved = false;
+    for (std::size_t i = 0; i < after.elements.size(); ++i) {
+        const Element &old = before.elements[i], &element = after.elements[i];
+        if (old.visible != element.visible) return Refit::impossible;
+        if (!element.visible) continue;
+        if (old.kernel != element.kernel || old.skeleton.index() != element.skeleton.index()) {
+            return Refit::impossible;
+        }
+        if (same_numbers(old, element) && old.color == element.color) continue;
+        changed.push_back(static_cast<std::uint32_t>(i));
+        if (field.clusters.empty()) continue;
+        if (changed.size() > most_in_clusters) return Refit::impossible;
+        is_moved = is_moved || place_of(old) != place_of(element);
+    }
+
+    if (changed.empty() && before.threshold == after.threshold) return Refit::as_compiled;
+
+    field.threshold = after.threshold;
+    std::vector<std::uint32_t> indices;  // in the field
+    for (std::size_t i = 0; i < field.size() && !changed.empty(); ++i) {
+        const std::uint32_t source = field.source[i];
+        if (!std::binary_search(changed.begin(), changed.end(), source)) continue;
+        put(field, i, after.elements[source]);
+        put_color(field, i, after.elements[source].color);
+        indices.push_back(static_cast<std::uint32_t>(i));
+    }
+    look_for_one_color(field);
+    const auto as_floats = [&] {
+        return std::tuple(field.compact, field.unit, field.scale, field.suits_float);
+    };
+    const auto floats_before = as_floats();
+    sum_up(field);
+    if (as_floats() == floats_before) {
+        for (const std::uint32_t i : indices) {
+            if (!field.clusters.empty()) fit(field, field.clusters.of(i), field.clusters);
+        }
+    } else {
+        field.clusters = clusters_of(field);
+    }
+    put_boxes(field);
+    return is_moved ? Refit::stretched : Refit::as_compiled;
 }
 
 std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
@@ -146,13 +230,9 @@ std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
         const Color& color = scene.elements[field.source[i]].color;
         if (field.color[i] == color) continue;
         changed.push_back(static_cast<std::uint32_t>(i));
-        field.color[i] = color;
-        field.red[i] = static_cast<float>(color.x);
-        field.green[i] = static_cast<float>(color.y);
-        field.blue[i] = static_cast<float>(color.z);
+        put_color(field, i, color);
     }
-    field.one_color = std::all_of(field.color.begin(), field.color.end(),
-                                  [&](const Color& c) { return c == field.color.front(); });
+    look_for_one_color(field);
     return changed;
 }
 

@@ -76,6 +76,8 @@ struct Field {
     Box3 reach_box;
     Box3 box;
 
+    friend bool operator==(const Field&, const Field&) = default;
+
     [[nodiscard]] std::size_t size() const { return shape.size(); }
     [[nodiscard]] Vec3d a(std::size_t i) const { return {ax[i], ay[i], az[i]}; }
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
@@ -83,6 +85,19 @@ struct Field {
 
 // Does not throw (but for memory); the scene has been validated by its reader.
 [[nodiscard]] Field compile(const Scene& scene);
+
+enum class Refit : std::uint8_t {
+    impossible,  // the field is what it was: compile
+    as_compiled,
+    // Elements have moved that compile would put elsewhere among the others: all holds, but
+    // clusters are larger than they need be.
+    stretched,
+};
+
+// Makes the field that was compiled from `before` (or refitted since) that of `after`. Possible
+// where these differ in the threshold and in numbers and colours of elements, and where there are
+// clusters of no more than a few elements.
+Refit refit(Field& field, const Scene& before, const Scene& after);
 
 // The colours of a scene that differs in nothing else from the one that `field` was compiled from.
 // Which elements have another than before: indices into `field`, ascending.

@@ -23,6 +23,7 @@ struct NearElements {
 
     [[nodiscard]] std::size_t size() const { return first.back(); }
     void make_room(std::size_t count);
+    friend bool operator==(const NearElements&, const NearElements&) = default;
 };
 
 }  // namespace ivory

@@ -14,6 +14,8 @@ struct Box3 {
     Vec3d lo{infinity, infinity, infinity};
     Vec3d hi{-infinity, -infinity, -infinity};
 
+    friend constexpr bool operator==(const Box3&, const Box3&) = default;
+
     constexpr bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 
     constexpr void include(const Box3& other) {

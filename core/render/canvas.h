@@ -64,6 +64,15 @@ struct Canvas {
             tile.list = {};
         }
     }
+
+    // For another threshold alone: what the others enclose, the sum of the F_i, is what it was.
+    void forget_empty_lists() {
+        for (TileState& tile : tiles) {
+            if (!tile.list.certainly_empty) continue;
+            tile.has_list = false;
+            tile.list = {};
+        }
+    }
 };
 
 }  // namespace ivory

@@ -16,6 +16,7 @@
 #include "app/viewer/script_player.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -341,6 +342,35 @@ TEST_F(Session, ADragEndsExactlyWhereverItWent) {
     show(with_left_blob_at(-1.2));
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), camera()));
+}
+
+// So many elements that they stand in clusters, which follow the element as long as it moves.
+TEST_F(Session, ADragThroughACrowdEndsAsRender) {
+    Scene scene;
+    scene.threshold = 0.5;
+    tools::Random random(5);
+    for (int n = 0; n < 2200; ++n) {
+        scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(1.2)},
+                                  .color = {random.uniform(0, 1), random.uniform(0, 1), 0.5},
+                                  .width = random.uniform(0.08, 0.12)});
+    }
+    show(std::make_shared<const Scene>(scene));
+    ASSERT_TRUE(wait_final());
+    for (int step = 0; step < 4; ++step) {
+        std::get<PointSkeleton>(scene.elements[7].skeleton).position.x += 0.3;
+        show(std::make_shared<const Scene>(scene));
+        ASSERT_TRUE(wait_first());
+    }
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, rendered(scene, camera()));
+    // The lists of the tiles outlast another threshold, and colours what was moved.
+    for (const double threshold : {0.45, 0.6, 2.0, 0.5}) {
+        scene.threshold = threshold;
+        scene.elements[8].color = {threshold / 4, 1, 0};
+        show(std::make_shared<const Scene>(scene));
+        ASSERT_TRUE(wait_final());
+        EXPECT_EQ(session.shown().color, rendered(scene, camera()));
+    }
 }
 
 TEST_F(Session, AnotherSizeReplacesThePictureAsAWhole) {
