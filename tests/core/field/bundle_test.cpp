@@ -12,6 +12,7 @@
 
 #include "core/field/surface.h"
 #include "core/math/direction.h"
+#include "tests/core/field/stage_check.h"
 #include "tests/tools/random_scene.h"
 
 namespace ivory {
@@ -72,6 +73,21 @@ TEST(Bundle, WhatIsLeftOutStaysInAsAnInterval) {
             std::max({share, above / window.fine_bounds.above, below / window.fine_bounds.below});
     });
     EXPECT_GT(left_out, 100);
+    EXPECT_GT(share, 0.1);
+}
+
+// The sums of a window's stages are off by no more than they say.
+TEST(Bundle, StagesAreAsGoodAsTheirBounds) {
+    int windows = 0;
+    double share = 0;
+    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window, double,
+                           const Vec3d& d, Random& random) {
+        ++windows;
+        share =
+            std::max(share, tools::expect_stages_hold(field, window, bundle.origin, d,
+                                                      random.uniform(window.begin, window.end)));
+    });
+    EXPECT_GT(windows, 1000);
     EXPECT_GT(share, 0.1);
 }
 

@@ -14,6 +14,7 @@
 #include "core/field/bundle.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
+#include "tests/core/field/stage_check.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -239,6 +240,53 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
     EXPECT_GT(inside, 200);
     EXPECT_GT(windows, 500);
     EXPECT_GT(of_parts, 100);
+}
+
+// Windows whose elements come from clusters, crowded or hundreds of widths apart, where a member's
+// place relative to its cluster has lost digits.
+TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
+    const std::uint64_t first = tools::announced_seed(65);
+    int windows = 0, sparse = 0;
+    double share = 0;
+    for (std::uint64_t seed = first; seed < first + 8; ++seed) {
+        Scene scene = crowd(2200, seed);
+        const bool is_sparse = seed % 2 == 0;
+        for (Element& element : scene.elements) {
+            // Far from each other: the skeletons stay where they are.
+            if (is_sparse) element.width *= 0.02;
+        }
+        const Field field = compile(scene);
+        ASSERT_FALSE(field.clusters.empty());
+        Random random(seed);
+        for (int n = 0; n < 25; ++n) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", bundle " + std::to_string(n));
+            const Vec3d origin = 5.0 * unit(random.in_cube(1));
+            const std::size_t aim = random.below(field.size());
+            const double spread = is_sparse ? 1e-4 : 0.01;
+            const Bundle bundle{origin, unit(on_skeleton(field, aim, random) - origin), spread};
+            BundleField along;
+            ASSERT_TRUE(along.build(field, all_clusters(field), bundle, 1e-6));
+            const std::array parts{BundlePart{.axis = bundle.axis, .spread = spread}};
+            along.for_windows(
+                parts, {}, [](const BundlePart&, double, double) { return true; },
+                std::numeric_limits<int>::max(),
+                [&](Window& window, const BundlePart&) {
+                    along.complete(window);
+                    const Vec3d d = unit(bundle.axis + 0.9 * spread * random.uniform(0, 1) *
+                                                           unit(random.in_cube(1)));
+                    share = std::max(
+                        share, tools::expect_stages_hold(field, window, origin, d,
+                                                         random.uniform(window.begin, window.end)));
+                    ++windows;
+                    sparse += is_sparse;
+                    return true;
+                });
+        }
+    }
+    EXPECT_GT(windows, 500);
+    EXPECT_GT(sparse, 50);
+    EXPECT_GT(share, 0.1);
+    std::printf("%d windows, %d of sparse fields, up to %.3f of a bound\n", windows, sparse, share);
 }
 
 }  // namespace

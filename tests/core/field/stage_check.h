@@ -1,0 +1,90 @@
+// What the entries of a window add up to, in plain double, and whether its bounds cover the rest.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/field/bundle.h"
+#include "core/field/field.h"
+#include "core/field/surface.h"
+#include "core/math/direction.h"
+
+namespace ivory::tools {
+
+struct StageValue {
+    double f = 0, slope = 0;  // without T
+};
+
+// At p, relative to the window's middle, along d; in the lengths of the entries.
+template <class Real>
+StageValue stage_value(const StageEntries<Real>& stage, const Field& field, const Vec3d& p,
+                       const Vec3d& d) {
+    StageValue sum;
+    for (std::size_t n = 0; n < stage.size; ++n) {
+        const BundleEntry<Real>& e = stage.entry[n];
+        const std::size_t i = stage.element[n];
+        const Vec3d v = p - Vec3d{e.cx, e.cy, e.cz}, m{e.mx, e.my, e.mz};
+        Vec3d away = v;
+        if (field.shape[i] == Shape::segment) {
+            away = v - std::clamp(dot(v, m) * e.extra, 0.0, 1.0) * m;
+        } else if (field.shape[i] == Shape::circle) {
+            const Vec3d across = v - dot(v, m) * m;
+            away = v - (e.extra / std::sqrt(dot(across, across))) * across;
+        }
+        const double s = dot(away, away) * e.inverse_square;
+        double k = 0, dk = 0;
+        if (field.kernel[i] == KernelKind::blinn) {
+            k = dk = std::exp2(-s);
+        } else if (field.kernel[i] == KernelKind::wyvill && s < 1) {
+            k = (1 - s) * (1 - s) * (9 - 4 * s) / 9;
+            dk = -2 * (1 - s) * (11 - 6 * s) / 9;
+        } else if (s < 1) {
+            const double q = std::sqrt(s);
+            k = s <= 1.0 / 9 ? 1 - 3 * s : 1.5 * (1 - q) * (1 - q);
+            dk = s <= 1.0 / 9 ? -3 : -1.5 * (1 - q) / q;
+        }
+        sum.f += e.strength * k;
+        sum.slope += e.slope * dk * dot(away, d);
+    }
+    return sum;
+}
+
+// That the strong entries, those with the weak ones, and the fine ones say of the field what their
+// bounds promise, where the ray from `origin` along d is at t. Returns the greatest share of a
+// bound that was needed.
+inline double expect_stages_hold(const Field& field, const Window& window, const Vec3d& origin,
+                                 const Vec3d& d, double t) {
+    const Vec3d p = window.middle * (d - window.axis) + (t - window.middle) * d;
+    double exact = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        exact += element_value(field, i, origin + t * d) * field.scale;
+    }
+    const StageValue fine = stage_value(window.fine, field, p, d);
+    const Vec3d p_near = (1 / field.unit) * p;
+    const StageValue strong = stage_value(window.strong, field, p_near, d);
+    const StageValue weak = stage_value(window.weak, field, p_near, d);
+    double share = 0;
+    const auto expect = [&](const char* name, double f, double slope, double unit,
+                            const StageBounds& bounds) {
+        SCOPED_TRACE(name);
+        // What plain double costs.
+        const double slack = 1e-12 * (1 + std::abs(exact));
+        EXPECT_LE(exact - f, bounds.above + slack);
+        EXPECT_LE(f - exact, bounds.below + slack);
+        EXPECT_LE(std::abs(fine.slope * unit - slope),
+                  bounds.slope + window.fine_bounds.slope * unit + slack);
+        share = std::max(
+            {share, (exact - f - slack) / bounds.above, (f - exact - slack) / bounds.below});
+    };
+    if (window.coarse_usable) {
+        expect("strong", strong.f, strong.slope, field.unit, window.strong_bounds);
+        expect("coarse", strong.f + weak.f, strong.slope + weak.slope, field.unit,
+               window.coarse_bounds);
+    }
+    if (window.fine_usable) expect("fine", fine.f, fine.slope, 1, window.fine_bounds);
+    return share;
+}
+
+}  // namespace ivory::tools
