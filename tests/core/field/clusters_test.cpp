@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/field/bundle.h"
+#include "core/field/bundle_steps.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
@@ -240,6 +241,53 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
     EXPECT_GT(inside, 200);
     EXPECT_GT(windows, 500);
     EXPECT_GT(of_parts, 100);
+}
+
+// No element is nearer to a stretch than its bound says, though it stands in a cluster that is
+// hundreds of widths wide: its place relative to the cluster's centre has lost digits.
+TEST(Clusters, MembersOfWideClustersAreNoNearerThanTheirBounds) {
+    const std::uint64_t seed = tools::announced_seed(66);
+    Random random(seed);
+    Scene scene;
+    scene.threshold = 0.5;
+    for (std::size_t n = 0; n < least_clustered; ++n) {
+        scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(200)}});
+    }
+    const Field field = compile(scene);
+    ActiveElements clusters;
+    clusters.take(field.clusters.first_of_group, all_clusters(field).clusters);
+    const BundleSteps& steps = bundle_steps();
+    int checked = 0;
+    double greatest = 0;  // share of the true s that the bound is
+    NearElements near, nearer;
+    for (int n = 0; n < 2000; ++n) {
+        const std::size_t aim = random.below(field.size());
+        const Vec3d origin = field.a(aim) + 60.0 * unit(random.in_cube(1));
+        const Vec3d axis = unit(field.a(aim) + random.in_cube(0.7) - origin);
+        const double t = dot(field.a(aim) - origin, axis), middle = t + random.uniform(-2, 2);
+        const auto stretch = [&](double half) {
+            return NearStretch{axis,
+                               {},
+                               0,
+                               (t - half - middle) / field.unit,
+                               (t + half - middle) / field.unit,
+                               middle / field.unit};
+        };
+        steps.bound_members(field, {origin, axis, 0, t - 2, t + 2}, middle, stretch(2), 1e-12,
+                            clusters, &near);
+        steps.bound_near(near, stretch(0.25), 1e-12, nearer);
+        for (const NearElements* found : {&near, &nearer}) {
+            for (std::size_t k = 0; k < found->size(); ++k) {
+                if (static_cast<std::size_t>(found->element[k]) != aim) continue;
+                const Vec3d off = origin + t * axis - field.a(aim);
+                ASSERT_LE(double{found->least[k]}, dot(off, off) * (1 + 1e-9) + 1e-12);
+                greatest = std::max(greatest, double{found->least[k]} / dot(off, off));
+                ++checked;
+            }
+        }
+    }
+    EXPECT_GT(checked, 3000);
+    EXPECT_GT(greatest, 0.99);
 }
 
 // Windows whose elements come from clusters, crowded or hundreds of widths apart, where a member's
