@@ -167,7 +167,8 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         } else {
             peaks = bound(on, fine_cut_, parent, in_clusters, here);
             if (here.is_near) {
-                bundle_steps().enter_near(*field_, on, here.near_middle, here.active, here.near);
+                bundle_steps().enter_near(*field_, stretch(parts_[0], t0, t1), here.near_middle,
+                                          here.active, here.near);
             }
         }
     }

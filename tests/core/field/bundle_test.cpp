@@ -91,6 +91,78 @@ TEST(Bundle, StagesAreAsGoodAsTheirBounds) {
     EXPECT_GT(share, 0.1);
 }
 
+// Where a wide bundle is parted while its stretches are still long, its parts and their rays see
+// the elements where they are.
+TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
+    int of_parts = 0, of_rays = 0, inside = 0;
+    for (std::uint64_t seed = 40; seed < 50; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        Scene scene;
+        scene.threshold = 0.5;
+        for (int n = 0; n < 300; ++n) {
+            scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(12)},
+                                      .width = random.uniform(0.1, 0.12)});
+        }
+        const Field field = compile(scene);
+        const Vec3d origin = 60.0 * unit(random.in_cube(1));
+        const Vec3d axis = unit(-1.0 * origin);
+        std::vector<BundlePart> parts{
+            {.axis = axis, .spread = 0.45, .end = 48, .first_part = 1, .end_of_parts = 13}};
+        std::vector<double> x, y, z;
+        std::vector<Vec3d> targets;
+        for (std::uint32_t k = 0; k < 12; ++k) {
+            const Vec3d target = field.a(random.below(field.size()));
+            const Vec3d part_axis = unit(target - origin + random.in_cube(1));
+            parts.push_back({.axis = part_axis, .spread = 0.05, .first = 4 * k, .end = 4 * k + 4});
+            for (int ray = 0; ray < 4; ++ray) {
+                targets.push_back(target + random.in_cube(0.05));
+                const Vec3d d = unit(targets.back() - origin);
+                x.push_back(d.x);
+                y.push_back(d.y);
+                z.push_back(d.z);
+            }
+        }
+        BundleField along;
+        ASSERT_TRUE(along.build(field, all_elements(field), {origin, axis, 0.45}, 1e-6));
+        const Directions rays{x.data(), y.data(), z.data()};
+        struct Seen {
+            double begin, end;
+            std::uint32_t first_ray, end_of_rays;
+        };
+        std::vector<Seen> seen;
+        along.for_windows(
+            parts, rays, [](const BundlePart&, double, double) { return true; },
+            std::numeric_limits<int>::max(),
+            [&](Window& window, const BundlePart& part) {
+                along.complete(window);
+                (part.end - part.first > 1 ? of_parts : of_rays) += 1;
+                seen.push_back({window.begin, window.end, part.first, part.end});
+                for (std::uint32_t k = part.first; k < part.end; ++k) {
+                    tools::expect_stages_hold(field, window, origin, rays[k],
+                                              random.uniform(window.begin, window.end));
+                }
+                return !testing::Test::HasFailure();
+            });
+        for (std::uint32_t k = 0; k < 48; ++k) {
+            for (int n = 0; n < 20; ++n) {
+                const double t = dot(targets[k] - origin, rays[k]) + random.uniform(-0.1, 0.1);
+                if (!(sample(field, origin + t * rays[k]).value > 1e-9)) continue;
+                ++inside;
+                ASSERT_TRUE(std::any_of(seen.begin(), seen.end(),
+                                        [&](const Seen& window) {
+                                            return window.begin <= t && t <= window.end &&
+                                                   window.first_ray <= k && k < window.end_of_rays;
+                                        }))
+                    << "t " << t;
+            }
+        }
+    }
+    EXPECT_GT(of_rays, 50);
+    EXPECT_GT(inside, 100);
+    std::printf("%d windows of several rays, %d of one\n", of_parts, of_rays);
+}
+
 // Between two places of a window without kinks f' rises by `rise` times their distance at the
 // most, and falls by `fall` times it.
 TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
