@@ -72,11 +72,6 @@ bool same_elements(const Scene& a, const Scene& b) {
     return true;
 }
 
-// Whether nothing but colours, lights and background does.
-bool same_geometry(const Scene& a, const Scene& b) {
-    return a.threshold == b.threshold && same_elements(a, b);
-}
-
 // A picture in the making, or made: what the workers have delivered of it.
 struct Board {
     static constexpr std::uint8_t nothing = 255;  // coarser than all blocks
@@ -537,9 +532,9 @@ class RenderSession::Director {
                                       [this] { return stop_ || wanted_; });
     }
 
-    // Makes field_ that of the scene; whether the lists of the view's tiles, if they are of the
-    // scene `before` (null: none), still hold.
-    bool take_scene(const Scene* before, const Scene& scene, bool same_view) {
+    // Makes field_ that of the scene; whether the tiles' lists, which are of the scene `before`
+    // (null: none), still hold. `same_view`; `same_places`: so are the elements.
+    bool take_scene(const Scene* before, const Scene& scene, bool same_view, bool same_places) {
         const bool has_field = field_ != nullptr && before != nullptr;
         // A whole picture would have to be made anew when the hand rests.
         const bool spares_rebuilding = same_view || !is_stretched_;
@@ -551,7 +546,7 @@ class RenderSession::Director {
         }
         is_stretched_ = is_stretched_ || refitted == Refit::stretched;
         const double share = scene.threshold / lists_threshold_;
-        if (same_view && same_elements(*before, scene) && share > 0.5 && share < 2) {
+        if (same_view && same_places && share > 0.5 && share < 2) {
             canvas_->forget_empty_lists();
             return true;
         }
@@ -573,7 +568,10 @@ class RenderSession::Director {
         const bool same_size = canvas_ != nullptr && before.size == request.size;
         const bool same_view = same_size && before.camera == request.camera;
         const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
-        if (same_view && whole && same_geometry(*before.scene, *request.scene)) {
+        const bool same_places =
+            before.scene != nullptr && same_elements(*before.scene, *request.scene);
+        if (same_view && whole && same_places &&
+            before.scene->threshold == request.scene->threshold) {
             const std::vector<std::uint32_t> changed = recolor(*field_, *request.scene);
             std::vector<std::uint32_t> all;
             std::set_union(recolored_.begin(), recolored_.end(), changed.begin(), changed.end(),
@@ -583,7 +581,8 @@ class RenderSession::Director {
             picture_.lighting = make_lighting(*request.scene, picture_.view);
             return Task::shade;
         }
-        const bool keeps_lists = take_scene(before.scene.get(), *request.scene, same_view);
+        const bool keeps_lists =
+            take_scene(before.scene.get(), *request.scene, same_view, same_places);
         if (!same_view) {
             picture_.view = make_view(request.camera);
             directions_.clear();

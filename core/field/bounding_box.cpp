@@ -112,15 +112,26 @@ Box3 skeleton_box(const Field& field, std::size_t i) {
     return box;
 }
 
+namespace {
+
+// The box holds all places within `radius` of the skeleton, certainly: quick, since rounding is
+// covered by far more than it can cost.
+bool certainly_holds(const Box3& box, const Field& field, std::size_t i, double radius) {
+    const Vec3d a = field.a(i);
+    const Vec3d b = field.shape[i] == Shape::segment ? field.b(i) : a;
+    const double most = radius + field.radius[i];  // of a circle; else 0
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double lo = std::min(a[k], b[k]), hi = std::max(a[k], b[k]);
+        const double slack = 1e-12 * (std::abs(lo) + std::abs(hi) + most);
+        if (!(lo - most - slack >= box.lo[k] && hi + most + slack <= box.hi[k])) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
 Box3 box_of_reach(const Field& field) {
     const std::size_t positive = count_positive(field);
-    const auto with_margin = [](Box3 box, double radius) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            box.lo[k] = sub_down(box.lo[k], radius);
-            box.hi[k] = add_up(box.hi[k], radius);
-        }
-        return box;
-    };
     Box3 box;
     for (std::size_t group = 0; group < field_groups; ++group) {
         const std::size_t first = field.first[group], end = field.first[group + 1];
@@ -132,17 +143,18 @@ Box3 box_of_reach(const Field& field) {
             strengths);
         const double highest = level(field, strongest, positive);
         if (highest < 0) continue;
+        const double widths = radius_at(highest, 1);
         for (std::size_t i = first; i < end; ++i) {
             // What the strongest would reach from here is in the box already: most are so inside.
-            const Box3 skeleton = skeleton_box(field, i);
-            const Box3 most = with_margin(skeleton, radius_at(highest, field.width[i]));
-            bool inside = true;
-            for (std::size_t k = 0; k < 3; ++k) {
-                inside = inside && most.lo[k] >= box.lo[k] && most.hi[k] <= box.hi[k];
-            }
-            if (inside) continue;
+            if (certainly_holds(box, field, i, widths * field.width[i])) continue;
             const double radius = reach(field, i, positive);
-            if (radius >= 0) box.include(with_margin(skeleton, radius));
+            if (radius < 0) continue;
+            Box3 ball = skeleton_box(field, i);
+            for (std::size_t k = 0; k < 3; ++k) {
+                ball.lo[k] = sub_down(ball.lo[k], radius);
+                ball.hi[k] = add_up(ball.hi[k], radius);
+            }
+            box.include(ball);
         }
     }
     return box;
