@@ -763,12 +763,14 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
 #endif
 }
 
-void place_near(const Field& field, const Stretch& stretch, double middle, NearElements& near) {
+void place_near(const Field& field, const Stretch& bundle, double middle, NearElements& near) {
     const D d;
     const I di;
     const hn::Rebind<float, D> narrow;
     const hn::Rebind<std::int32_t, D> narrow_index;
     const V<D> outward = constant(-1 / field.unit);
+    // Vectors are read whole: what stands beyond the last element may be of another field.
+    std::fill_n(near.element.begin() + static_cast<std::ptrdiff_t>(near.size()), hn::Lanes(d), 0);
     for (std::size_t i = 0; i < near.size(); i += hn::Lanes(d)) {
         const hn::Vec<I> index = hn::PromoteTo(di, hn::LoadU(narrow_index, &near.element[i]));
         const auto place = [&](double o, const std::vector<double>& c, double axis,
@@ -776,9 +778,9 @@ void place_near(const Field& field, const Stretch& stretch, double middle, NearE
             const V<D> from = offset_lanes(o, hn::GatherIndex(d, c.data(), index), middle, axis);
             hn::StoreU(hn::DemoteTo(narrow, hn::Mul(from, outward)), narrow, &values[i]);
         };
-        place(stretch.origin.x, field.ax, stretch.axis.x, near.x);
-        place(stretch.origin.y, field.ay, stretch.axis.y, near.y);
-        place(stretch.origin.z, field.az, stretch.axis.z, near.z);
+        place(bundle.origin.x, field.ax, bundle.axis.x, near.x);
+        place(bundle.origin.y, field.ay, bundle.axis.y, near.y);
+        place(bundle.origin.z, field.az, bundle.axis.z, near.z);
     }
     near.magnitude = 0;
 }
@@ -822,7 +824,7 @@ void near_group(const Field& field, const ActiveElements& active, std::size_t fi
     }
 }
 
-void enter_near(const Field& field, const Stretch& stretch, double middle,
+void enter_near(const Field& field, const Stretch& bundle, double middle,
                 const ActiveElements& active, NearElements& near) {
     near.make_room(active.size());
     near.first = active.first;
@@ -831,9 +833,7 @@ void enter_near(const Field& field, const Stretch& stretch, double middle,
         if (first == end) return;
         near_group<shape>(field, active, first, end, near);
     });
-    // Vectors are read whole, beyond the last element too.
-    std::fill_n(near.element.begin() + static_cast<std::ptrdiff_t>(near.size()), hn::Lanes(D()), 0);
-    place_near(field, stretch, middle, near);
+    place_near(field, bundle, middle, near);
 }
 
 // The valid ones from `first` on; their places, less `place`, are those of `candidates`.

@@ -75,6 +75,8 @@ struct BendSums {
     double kinks = 0;           // and of |f'| of the elements whose f'' has none
 };
 
+// Of |F|: what may be above the first enters a window among the strong entries, else what may be
+// above the second among the weak ones.
 struct CoarseCuts {
     double strong = 0, weak = 0;
 };
@@ -103,12 +105,13 @@ struct BundleSteps {
     BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,
                      ActiveElements& active);
 
-    // Those elements with their bounds, in units (Field::unit), relative to the place at `middle`.
-    void (*enter_near)(const Field& field, const Stretch& stretch, double middle,
+    // Those elements with their bounds, in units (Field::unit), relative to the place at `middle`
+    // on the axis of the `bundle`, not of one of its parts.
+    void (*enter_near)(const Field& field, const Stretch& bundle, double middle,
                        const ActiveElements& active, NearElements& near);
 
     // Their places anew, without what they were off by, relative to the place at another `middle`.
-    void (*place_near)(const Field& field, const Stretch& stretch, double middle,
+    void (*place_near)(const Field& field, const Stretch& bundle, double middle,
                        NearElements& near);
 
     // The members of clusters with |F| possibly above `cut`, likewise; `bundle` has the bundle's
@@ -122,8 +125,7 @@ struct BundleSteps {
                            NearElements& kept);
     BendSums (*bend_near)(NearElements& near, const NearStretch& stretch);
 
-    // The window's coarse entries, in units: strong ones with peaks above the first cut, weak ones
-    // above the second.
+    // The window's coarse entries, in units.
     StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale,
                         const CoarseCuts& cuts, const ActiveElements& active, Window& window);
     // The same, in float, and so are the sums. `stretch` is that of the window, relative to the

@@ -22,6 +22,7 @@
 #include "core/render/render.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
+#include "tests/tools/move_element.h"
 
 namespace ivory {
 namespace {
@@ -36,17 +37,6 @@ struct Options {
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
-}
-
-void move(Element& element, const Vec3d& by) {
-    if (auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-        point->position = point->position + by;
-    } else if (auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        segment->a = segment->a + by;
-        segment->b = segment->b + by;
-    } else if (auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
-        circle->center = circle->center + by;
-    }
 }
 
 // The first of the elements that are seen best: those whose skeletons are nearest to the camera.
@@ -93,7 +83,7 @@ std::vector<Edit> edits_of(const Scene& scene, const Camera& camera, int height)
              }},
             {"moved by 5 pixels",
              [=](Scene& s, Camera&) {
-                 move(s.elements[element], {5 * pixel, 0, 0});
+                 tools::move(s.elements[element], {5 * pixel, 0, 0});
              }},
             {"width", [=](Scene& s, Camera&) { s.elements[element].width *= 1.05; }},
             {"hidden", [=](Scene& s, Camera&) { s.elements[element].visible = false; }},

@@ -7,12 +7,14 @@
 
 #include "core/field/field.h"
 #include "core/math/direction.h"
+#include "tests/tools/move_element.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
 namespace {
 
+using tools::move;
 using tools::Random;
 
 Scene crowd(std::size_t elements, std::uint64_t seed) {
@@ -23,17 +25,6 @@ std::size_t visible_element(const Scene& scene, Random& random) {
     while (true) {
         const std::size_t i = random.below(scene.elements.size());
         if (scene.elements[i].visible) return i;
-    }
-}
-
-void move(Element& element, const Vec3d& by) {
-    if (auto* point = std::get_if<PointSkeleton>(&element.skeleton))
-        point->position = point->position + by;
-    if (auto* circle = std::get_if<CircleSkeleton>(&element.skeleton))
-        circle->center = circle->center + by;
-    if (auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        segment->a = segment->a + by;
-        segment->b = segment->b + by;
     }
 }
 

@@ -17,7 +17,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/math/direction.h"
 #include "core/render/statistics.h"
 #include "core/trace/trace.h"
 #include "tests/tools/random_scene.h"
@@ -173,22 +172,9 @@ TEST(Render, CrowdedPicturesAreTheAnswersOfTheirRays) {
 // Where pixels lie farther apart than the elements are wide, each ray has windows of its own:
 // hardly one is left to be traced alone, which takes a hundred times as long.
 TEST(Render, SmallPicturesOfCrowdedScenesLeaveNoRayAlone) {
-    Scene scene;
-    scene.threshold = 0.5;
-    scene.camera = Camera{{0, 0, 3.9}, {0, 0, 0}, {0, 1, 0}, 40};
-    tools::Random random(11);
-    for (int n = 0; n < 400; ++n) {
-        Element element;
-        const Vec3d center = random.in_cube(0.7);
-        const Vec3d side = 0.1 * unit(random.in_cube(1));
-        if (n % 3 == 0) element.skeleton = PointSkeleton{center};
-        if (n % 3 == 1) element.skeleton = SegmentSkeleton{center - side, center + side};
-        if (n % 3 == 2) element.skeleton = CircleSkeleton{center, side, 0.1};
-        element.width = random.uniform(0.03, 0.06);
-        scene.elements.push_back(element);
-    }
-    const Picture picture = picture_of(scene, "proved", 80, 45);
-    Canvas canvas(80, 45, false);
+    constexpr int width = 64, height = 36;
+    const Picture picture = picture_of(tools::mixed_scene(600, 11), "proved", width, height);
+    Canvas canvas(width, height, false);
     JobSettings settings;
     settings.threads = 2;
     const JobReport report = render(picture, canvas, settings);
