@@ -344,6 +344,19 @@ TEST_F(Session, ADragEndsExactlyWhereverItWent) {
     EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), camera()));
 }
 
+// A lower threshold lets the surface grow into tiles that a list had proved empty.
+TEST_F(Session, AnotherThresholdEndsAsRender) {
+    constexpr WindowSize large{800, 560};
+    Scene scene = two_blobs();
+    const double threshold = scene.threshold;
+    for (const double share : {1.0, 0.52, 0.35, 0.65, 1.2}) {
+        scene.threshold = share * threshold;
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        ASSERT_TRUE(wait_final());
+        EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+    }
+}
+
 // So many elements that they stand in clusters, which follow the element as long as it moves.
 TEST_F(Session, ADragThroughACrowdEndsAsRender) {
     Scene scene;
