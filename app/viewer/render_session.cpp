@@ -468,6 +468,11 @@ class RenderSession::Director {
                 kept.assign(kept.size(), 1);
             }
             if (going_on) {
+                {
+                    const std::lock_guard lock(mutex_);
+                    // Shading may have shown them all.
+                    board_.expect(kept, kept, true);
+                }
                 // in plain order: no tile is shown coarser than it is
                 going_on = run(Task::trace_and_shade, Order::plain, request, kept);
                 settle(kept);

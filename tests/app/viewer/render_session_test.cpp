@@ -314,6 +314,35 @@ TEST_F(Session, EditsThatOvertakeEachOtherEndAsRender) {
     }
 }
 
+// Tiles that a moved element cannot be seen to change are traced when the hand rests. A colour that
+// comes before shades them, and one that comes while they are traced leaves them to be traced.
+TEST_F(Session, TilesLeftForLaterAreTracedThoughColoursComeBetween) {
+    constexpr WindowSize large{900, 600};
+    Scene scene = two_blobs();
+    scene.elements.push_back(point({0, 1, 0.3}, KernelKind::blinn, 0.4, {0.2, 0.8, 0.2}));
+    for (const std::uint64_t late : {2, 20, 200}) {
+        SCOPED_TRACE(late);
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        ASSERT_TRUE(wait_final());
+        const std::uint64_t before = session.totals().tiles_traced;
+        std::get<PointSkeleton>(scene.elements[2].skeleton).position.y += 0.07;
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        ASSERT_TRUE(wait_first());
+        scene.elements[0].color.x = 0.5 + 0.001 * static_cast<double>(late);
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        const std::uint64_t by_the_move = session.totals().tiles_traced;
+        ASSERT_TRUE(wait_until([&] {
+            session.poll(FirstPicture::settled);
+            return session.state().final || session.totals().tiles_traced >= by_the_move + late;
+        }));
+        scene.elements[1].color.y = 0.5 + 0.001 * static_cast<double>(late);
+        show(std::make_shared<const Scene>(scene), camera(), large);
+        ASSERT_TRUE(wait_final());
+        EXPECT_GE(session.totals().tiles_traced, before + session.state().tiles);
+        EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+    }
+}
+
 TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {
     auto scene = std::make_shared<const Scene>(two_blobs());
     show(scene);
