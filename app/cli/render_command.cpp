@@ -79,8 +79,9 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
                       Progress& progress) {
     const Clock::time_point start = Clock::now();
     Rendering rendering;
-    rendering.picture = make_picture(scene, arguments.width, arguments.height,
-                                     *arguments.work.method, arguments.work.options);
+    rendering.picture =
+        make_picture(scene, arguments.width, arguments.height, *arguments.work.method,
+                     arguments.work.options, arguments.work.threads);
     rendering.seconds.compile = seconds_since(start);
 
     const Clock::time_point compiled = Clock::now();

@@ -561,7 +561,7 @@ class RenderSession::Director {
 
     void compile_anew(const Scene& scene) {
         field_.reset();
-        field_ = std::make_shared<Field>(compile(scene));
+        field_ = std::make_shared<Field>(compile(scene, settings_.threads));
         picture_.field = field_;
         is_stretched_ = false;
         lists_threshold_ = scene.threshold;

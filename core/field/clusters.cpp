@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "core/field/field.h"
 #include "core/math/box3.h"
+#include "core/math/parallel.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
@@ -96,7 +98,7 @@ void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
     clusters.inverse_square[cluster] = 1 / (widest * widest) * (1 - 0x1p-40);
 }
 
-Clusters clusters_of(const Field& field) {
+Clusters clusters_of(const Field& field, int threads) {
     Clusters clusters;
     if (!field.compact || field.size() < least_clustered) return clusters;
     for (std::size_t group = 0; group < field_groups; ++group) {
@@ -117,32 +119,54 @@ Clusters clusters_of(const Field& field) {
         clusters.members.make_room(field.size());
         clusters.members.first = field.first;
     }
-    for (std::size_t cluster = 0; cluster < count; ++cluster) fit(field, cluster, clusters);
+    for_ranges(count, threads, 512, [&](std::size_t from, std::size_t to) {
+        for (std::size_t cluster = from; cluster < to; ++cluster) fit(field, cluster, clusters);
+    });
     return clusters;
 }
 
-void sort_by_place(const Scene& scene, std::vector<std::uint32_t>& elements) {
+void sort_by_place(const Scene& scene, int threads, std::vector<std::uint32_t>& elements) {
+    constexpr std::size_t least_range = 8192;
+    std::mutex mutex;
     Box3 box;
-    for (const std::uint32_t i : elements) {
-        const Vec3d place = place_of(scene.elements[i]);
-        box.include({place, place});
-    }
+    for_ranges(elements.size(), threads, least_range, [&](std::size_t first, std::size_t end) {
+        Box3 of_range;
+        for (std::size_t k = first; k < end; ++k) {
+            const Vec3d place = place_of(scene.elements[elements[k]]);
+            of_range.include({place, place});
+        }
+        const std::lock_guard lock(mutex);
+        box.include(of_range);
+    });
     const auto cell = [&](double x, std::size_t axis) {
         const double share = (x - box.lo[axis]) / (box.hi[axis] - box.lo[axis]);
         // Not a number, or beyond them, where the box is empty or too large.
         return share > 0 && share <= 1 ? static_cast<std::uint32_t>(share * 1023) : 0;
     };
-    // The key above the index: one number to compare.
-    std::vector<std::uint64_t> keys;
-    keys.reserve(elements.size());
-    for (const std::uint32_t i : elements) {
-        const Vec3d place = place_of(scene.elements[i]);
-        const std::uint32_t key = spread_bits(cell(place.x, 0)) |
-                                  spread_bits(cell(place.y, 1)) << 1 |
-                                  spread_bits(cell(place.z, 2)) << 2;
-        keys.push_back(std::uint64_t{key} << 32 | i);
+    // The key above the index: one number to compare, no two alike.
+    std::vector<std::uint64_t> keys(elements.size());
+    std::vector<std::size_t> ends;  // of sorted ranges
+    for_ranges(elements.size(), threads, least_range, [&](std::size_t first, std::size_t end) {
+        for (std::size_t k = first; k < end; ++k) {
+            const Vec3d place = place_of(scene.elements[elements[k]]);
+            const std::uint32_t key = spread_bits(cell(place.x, 0)) |
+                                      spread_bits(cell(place.y, 1)) << 1 |
+                                      spread_bits(cell(place.z, 2)) << 2;
+            keys[k] = std::uint64_t{key} << 32 | elements[k];
+        }
+        const auto begin = keys.begin();
+        std::sort(begin + static_cast<std::ptrdiff_t>(first),
+                  begin + static_cast<std::ptrdiff_t>(end));
+        const std::lock_guard lock(mutex);
+        ends.push_back(end);
+    });
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t range = 1; range < ends.size(); ++range) {
+        const auto end = [&](std::size_t n) {
+            return keys.begin() + static_cast<std::ptrdiff_t>(ends[n]);
+        };
+        std::inplace_merge(keys.begin(), end(range - 1), end(range));
     }
-    std::sort(keys.begin(), keys.end());
     for (std::size_t k = 0; k < keys.size(); ++k) {
         elements[k] = static_cast<std::uint32_t>(keys[k]);
     }

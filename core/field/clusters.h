@@ -44,7 +44,7 @@ struct Clusters {
 };
 
 // Those of a compact field with that many elements; of others none.
-[[nodiscard]] Clusters clusters_of(const Field& field);
+[[nodiscard]] Clusters clusters_of(const Field& field, int threads);
 
 // The bounds of one of them anew, and its members, after elements of the field have changed.
 void fit(const Field& field, std::size_t cluster, Clusters& clusters);
@@ -54,6 +54,6 @@ void fit(const Field& field, std::size_t cluster, Clusters& clusters);
 
 // Indices of elements of the scene, put in the order of their places along a curve through space
 // (Morton 1966): those that follow each other are near each other. Equal places keep their order.
-void sort_by_place(const Scene& scene, std::vector<std::uint32_t>& elements);
+void sort_by_place(const Scene& scene, int threads, std::vector<std::uint32_t>& elements);
 
 }  // namespace ivory

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <tuple>
 
 #include "core/field/bounding_box.h"
 #include "core/math/direction.h"
+#include "core/math/parallel.h"
 
 namespace ivory {
 namespace {
@@ -34,6 +36,8 @@ void make_room(Field& field, std::size_t count) {
           &field.inverse_width, &field.inverse_square, &field.cut}) {
         column->resize(count);
     }
+    for (auto* column : {&field.red, &field.green, &field.blue}) column->resize(count);
+    field.color.resize(count);
     field.shape.resize(count);
     field.kernel.resize(count);
     field.source.resize(count);
@@ -78,6 +82,9 @@ void put(Field& field, std::size_t i, const Element& element) {
     field.inverse_width[i] = 1 / element.width;
     field.inverse_square[i] = 1 / (element.width * element.width);
 }
+
+// Below so many elements another thread costs more than it saves.
+constexpr std::size_t least_range = 8192;
 
 void put_color(Field& field, std::size_t i, const Color& color) {
     field.color[i] = color;
@@ -129,9 +136,15 @@ void sum_up(Field& field) {
                         field.greatest_size < most_in_float * field.greatest_width;
 }
 
-void put_boxes(Field& field) {
+void put_boxes(Field& field, int threads) {
     field.skeletons = {};
-    for (std::size_t i = 0; i < field.size(); ++i) field.skeletons.include(skeleton_box(field, i));
+    std::mutex mutex;
+    for_ranges(field.size(), threads, least_range, [&](std::size_t first, std::size_t end) {
+        Box3 box;
+        for (std::size_t i = first; i < end; ++i) box.include(skeleton_box(field, i));
+        const std::lock_guard lock(mutex);
+        field.skeletons.include(box);
+    });
     field.reach_box = box_of_reach(field);
     field.box = shrunk_box(field, field.reach_box);
 }
@@ -142,7 +155,7 @@ bool same_numbers(const Element& a, const Element& b) {
 
 }  // namespace
 
-Field compile(const Scene& scene) {
+Field compile(const Scene& scene, int threads) {
     Field field;
     field.threshold = scene.threshold;
     std::array<std::vector<std::uint32_t>, field_groups> groups;
@@ -158,17 +171,23 @@ Field compile(const Scene& scene) {
     std::size_t count = 0;
     for (std::size_t group = 0; group < field_groups; ++group) {
         field.first[group] = static_cast<std::uint32_t>(count);
-        if (visible >= least_clustered) sort_by_place(scene, groups[group]);
-        for (const std::uint32_t i : groups[group]) {
-            field.source[count] = i;
-            put(field, count++, scene.elements[i]);
-        }
+        if (visible >= least_clustered) sort_by_place(scene, threads, groups[group]);
+        std::copy(groups[group].begin(), groups[group].end(),
+                  field.source.begin() + static_cast<std::ptrdiff_t>(count));
+        count += groups[group].size();
     }
     field.first[field_groups] = static_cast<std::uint32_t>(count);
-    recolor(field, scene);
+    for_ranges(visible, threads, least_range, [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            const Element& element = scene.elements[field.source[i]];
+            put(field, i, element);
+            put_color(field, i, element.color);
+        }
+    });
+    look_for_one_color(field);
     sum_up(field);
-    field.clusters = clusters_of(field);
-    put_boxes(field);
+    field.clusters = clusters_of(field, threads);
+    put_boxes(field, threads);
     return field;
 }
 
@@ -213,20 +232,15 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
             if (!field.clusters.empty()) fit(field, field.clusters.of(i), field.clusters);
         }
     } else {
-        field.clusters = clusters_of(field);
+        field.clusters = clusters_of(field, 1);
     }
-    put_boxes(field);
+    put_boxes(field, 1);
     return is_moved ? Refit::stretched : Refit::as_compiled;
 }
 
 std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
     std::vector<std::uint32_t> changed;
-    const std::size_t size = field.size();
-    field.color.resize(size, Color{-1, -1, -1});  // of none
-    field.red.resize(size);
-    field.green.resize(size);
-    field.blue.resize(size);
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < field.size(); ++i) {
         const Color& color = scene.elements[field.source[i]].color;
         if (field.color[i] == color) continue;
         changed.push_back(static_cast<std::uint32_t>(i));

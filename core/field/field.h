@@ -83,8 +83,9 @@ struct Field {
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
 };
 
-// Does not throw (but for memory); the scene has been validated by its reader.
-[[nodiscard]] Field compile(const Scene& scene);
+// Does not throw (but for memory); the scene has been validated by its reader. The field is the
+// same for any number of threads.
+[[nodiscard]] Field compile(const Scene& scene, int threads = 1);
 
 enum class Refit : std::uint8_t {
     impossible,  // the field is what it was: compile

@@ -27,9 +27,9 @@ struct Picture {
 };
 
 // The picture of a scene through its camera, or the default one (core/render/camera.h), in that
-// many pixels. Throws Error as make_view and default_camera do.
+// many pixels, compiled by so many threads. Throws Error as make_view and default_camera do.
 [[nodiscard]] Picture make_picture(const Scene& scene, int width, int height, const Method& method,
-                                   const MethodOptions& options);
+                                   const MethodOptions& options, int threads = 1);
 
 // A tile as the last job left it.
 struct TileState {
