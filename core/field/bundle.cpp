@@ -15,6 +15,15 @@ constexpr double bend_limit = 8;
 
 constexpr double strong_cut_share = 0x1p-8, coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
 constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
+// Elements below this multiple of it are added up in float: in crowds what they lose there is a
+// fraction of what those below the fine cut leave open.
+constexpr double faint_cut_multiple = 0x1p13;
+// Unless what float loses of them all is more than this share of that cut: places may be rough.
+constexpr double worst_faint_share = 0x1p-6;
+// The multiple for windows that leave out next to nothing.
+constexpr double finer_cut_multiple = 0x1p-3;
+
+constexpr double u_float = 0x1p-22;  // of sums in float, as add_rest wants it
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.
@@ -78,6 +87,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     unit_ = field.unit;
     least_width_ = field.least_width;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
+    faint_cut_ = fine_cut_ * faint_cut_multiple;
     refined_cut_ = fine_cut_ * refined_cut_share;
     list_.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
     list_.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
@@ -132,6 +142,16 @@ void BundleField::add_rest(const Bounded& parent, const PeakSums& peaks, std::si
     result.rest_below = (parent.rest_below + peaks.rest_below * sums) * (1 + 0x1p-50);
 }
 
+// Those of the parent's clusters, in float; `result` says relative to what.
+PeakSums BundleField::bound_members(const BundlePart& part, double t0, double t1, double cut,
+                                    const Bounded& parent, Bounded& result) {
+    const PeakSums peaks = bundle_steps().bound_members(
+        *field_, stretch(parts_[0], t0, t1), result.near_middle,
+        near_stretch(part, result.near_middle, t0, t1), cut, parent.active, &result.near);
+    add_rest(parent, peaks, parent.active.size() * cluster_size, u_float, result);
+    return peaks;
+}
+
 bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1,
                         bool in_clusters) {
     if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
@@ -141,7 +161,7 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
     double u = 0x1p-52;  // of the sums
     here.is_near = parent.is_near;
     if (parent.is_near) {
-        u = 0x1p-22;
+        u = u_float;
         here.near_middle = parent.near_middle;
         peaks = bundle_steps().bound_near(
             parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
@@ -158,12 +178,9 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
                        t1 - t0 < longest_in_float * unit_;
         here.near_middle = 0.5 * (t0 + t1);
         if (here.is_near && parent.in_clusters) {
-            u = 0x1p-22;
+            u = u_float;
             here.in_clusters = false;
-            peaks = bundle_steps().bound_members(
-                *field_, stretch(parts_[0], t0, t1), here.near_middle,
-                near_stretch(part, here.near_middle, t0, t1), fine_cut_, parent.active, &here.near);
-            add_rest(parent, peaks, parent.active.size() * cluster_size, u, here);
+            peaks = bound_members(part, t0, t1, fine_cut_, parent, here);
         } else {
             peaks = bound(on, fine_cut_, parent, in_clusters, here);
             if (here.is_near) {
@@ -239,6 +256,7 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     const Bounded& here = bounded_by_depth_[depth];
     finished_depth_ = depth;
     finished_ = stretch(part, t0, t1);
+    finished_part_ = part;
     w.begin = t0;
     w.end = t1;
     w.axis = part.axis;
@@ -248,7 +266,7 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.is_complete = w.fine_usable = is_refined_ = false;
+    w.is_complete = w.fine_usable = is_refined_ = is_finer_ = false;
 
     const CoarseCuts cuts{threshold_ * strong_cut_share, threshold_ * coarse_cut_share};
     StageSums sums;
@@ -273,21 +291,55 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
                       sums.full_slope * slope_unit < 1e14 && w.strong_bounds.slope < 1e14;
 }
 
-void BundleField::complete(const Stretch& on, const Bounded& bounded, Window& w) {
+// From doubles or, where they are there, floats.
+void BundleField::complete(const Bounded& bounded, double faint_cut, Window& w) {
     const ActiveElements* active = &bounded.active;
+    w.faint.clear();
+    StageBounds faint;
     if (bounded.is_near) {
-        members_.take(bounded.near, unit_);
         active = &members_;
+        const NearStretch on =
+            near_stretch(finished_part_, bounded.near_middle, finished_.begin, finished_.end);
+        const double middle = (w.middle - bounded.near_middle) / unit_;
+        const auto part_at = [&](double cut) {
+            const StageSums sums =
+                bundle_steps().faint(bounded.near, on, middle, unit_, cut, w, members_);
+            if (w.faint.size > 0) {
+                faint = stage_bounds(sums, 0x1p-24, 0x1p-24, w.faint.size, bounded.near.size(), 0,
+                                     0, 0, 1, 1e-30);
+                // No slope of theirs is computed.
+                faint.slope = sums.full_slope *
+                              (1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22) / unit_;
+            }
+            return sums.usable && std::max(faint.above, faint.below) <= cut * worst_faint_share;
+        };
+        if (!part_at(faint_cut)) {
+            faint = {};
+            part_at(-1);  // all in double
+        }
     }
-    const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
+    const StageSums sums = bundle_steps().fine(*field_, finished_, scale_, *active, w);
     w.fine_bounds = stage_bounds(sums, 0x1p-53, 0x1p-53, w.fine.size, active->size(), threshold_,
                                  bounded.rest_above, bounded.rest_below, 1, 1e-280);
+    w.fine_bounds.above += faint.above;
+    w.fine_bounds.below += faint.below;
+    w.fine_bounds.slope += faint.slope;
     w.fine_usable = sums.usable;
     w.is_complete = true;
 }
 
 void BundleField::complete(Window& w) {
-    if (!w.is_complete) complete(finished_, bounded_by_depth_[finished_depth_], w);
+    if (!w.is_complete) complete(bounded_by_depth_[finished_depth_], faint_cut_, w);
+}
+
+void BundleField::take_finished(const Bounded& bounded, double faint_cut, Window& w) {
+    w.begin = window_.begin;
+    w.middle = window_.middle;
+    w.end = window_.end;
+    w.axis = window_.axis;
+    w.rise = bounded.rise;
+    w.fall = bounded.fall;
+    complete(bounded, faint_cut, w);
 }
 
 const Window& BundleField::refined() {
@@ -299,15 +351,28 @@ const Window& BundleField::refined() {
         from = &near_clusters_;
     }
     bound(finished_, refined_cut_, *from, false, refined_bounded_);
+    refined_bounded_.is_near = false;
     bend(finished_, refined_bounded_);
-    refined_.begin = window_.begin;
-    refined_.middle = window_.middle;
-    refined_.end = window_.end;
-    refined_.axis = window_.axis;
-    refined_.rise = refined_bounded_.rise;
-    refined_.fall = refined_bounded_.fall;
-    complete(finished_, refined_bounded_, refined_);
+    take_finished(refined_bounded_, 0, refined_);
     return refined_;
+}
+
+// Of clusters the members are bounded in float.
+const Window& BundleField::finer() {
+    if (!(list_.in_clusters && bounded_by_depth_[finished_depth_].is_near)) return refined();
+    if (is_finer_) return finer_;
+    is_finer_ = true;
+    Bounded& finer = refined_bounded_;
+    bound(finished_, refined_cut_, list_, true, near_clusters_);
+    finer.is_near = true;
+    finer.in_clusters = false;
+    finer.near_middle = window_.middle;
+    const double t0 = finished_.begin - pad_of(finished_.begin, finished_.end),
+                 t1 = finished_.end + pad_of(finished_.begin, finished_.end);
+    bound_members(finished_part_, t0, t1, refined_cut_, near_clusters_, finer);
+    bend(finished_part_, t0, t1, finer);
+    take_finished(finer, fine_cut_ * finer_cut_multiple, finer_);
+    return finer_;
 }
 
 }  // namespace ivory

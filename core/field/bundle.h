@@ -14,7 +14,9 @@
 //         2 a / w^2 for a segment, where x^2 <= a s, a <= 1 (a = 1 about its ends, the squared sine
 //         of the angle between ray and segment along it); 2 / w^2 (1 - r rho'') for a circle,
 //         0 <= rho'' <= 1 / rho;
-//     bounds of the rounding errors of f and f', so that the inner loop carries none of them.
+//     bounds of the rounding errors of f and f', so that the inner loop carries none of them; of
+//     the
+//         faint ones of the fine stage float's are small enough.
 // Long stretches of large scenes are bounded by clusters (core/field/clusters.h); shorter ones by
 // elements, in float relative to their middle where the field suits that, else in double.
 //
@@ -122,7 +124,8 @@ struct Window {
     // Once `complete` has been called for this window:
     bool is_complete = false;
     StageEntries<double> fine;  // likewise, in scene units
-    StageBounds fine_bounds;    // per scene unit
+    StageEntries<float> faint;  // those of them that float is good enough for, as in `weak`
+    StageBounds fine_bounds;    // of both, the slope computed of the first; per scene unit
     bool fine_usable = false;
 };
 
@@ -160,9 +163,10 @@ class BundleField {
     // The fine stage of the window that is being visited, if it is not there yet.
     void complete(Window& window);
 
-    // The window that is being visited, with a fine stage that leaves out next to nothing, and
-    // bounds of f'' for it. No coarse stage.
+    // The window that is being visited, with a fine stage that leaves out next to nothing and
+    // bounds of f'' for it. No coarse stage; `refined` has no faint entries either.
     const Window& refined();
+    const Window& finer();
 
     // Bounded since `build`, and how many of them were ended by the sum of peaks.
     [[nodiscard]] std::uint64_t stretches() const { return stretches_; }
@@ -191,6 +195,8 @@ class BundleField {
         [[nodiscard]] std::size_t size() const { return is_near ? near.size() : active.size(); }
     };
 
+    // Float cannot name the ends of a stretch: what is bounded is so much longer.
+    static double pad_of(double t0, double t1) { return 0x1p-20 * (t1 - t0); }
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     [[nodiscard]] NearStretch near_stretch(const BundlePart& part, double middle, double t0,
                                            double t1) const;
@@ -200,11 +206,14 @@ class BundleField {
     // stay clusters if that is wanted.
     PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
                    Bounded& result);
+    PeakSums bound_members(const BundlePart& part, double t0, double t1, double cut,
+                           const Bounded& parent, Bounded& result);
     static void add_rest(const Bounded& parent, const PeakSums& peaks, std::size_t candidates,
                          double u, Bounded& result);
     void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     void bend(const Stretch& on, Bounded& bounded) const;
-    void complete(const Stretch& on, const Bounded& bounded, Window& window);
+    void complete(const Bounded& bounded, double faint_cut, Window& window);
+    void take_finished(const Bounded& bounded, double faint_cut, Window& window);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
     // It has no parts but its rays.
     [[nodiscard]] static bool has_single_rays(const BundlePart& part) {
@@ -221,8 +230,7 @@ class BundleField {
     template <class Wanted, class Visit>
     bool descend(std::size_t depth, const BundlePart& part, double t0, double t1,
                  const Wanted& wanted, const Visit& visit) {
-        // Float cannot name the ends: what is bounded is a little longer.
-        const double pad = 0x1p-20 * (t1 - t0);
+        const double pad = pad_of(t0, t1);
         if (!wanted(part, t0, t1)) return true;
         if (left_-- <= 0) {
             window_.coarse_usable = false;
@@ -270,13 +278,14 @@ class BundleField {
     std::vector<Bounded> bounded_by_depth_;
     std::size_t finished_depth_ = 0;
     Stretch finished_;  // of the window
+    BundlePart finished_part_;
     Window window_;
     Bounded refined_bounded_;
-    Window refined_;
-    bool is_refined_ = false;  // refined_ is that of the window
+    Window refined_, finer_;
+    bool is_refined_ = false, is_finer_ = false;  // those are of the window
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
-    double fine_cut_ = 0, refined_cut_ = 0;
+    double fine_cut_ = 0, faint_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;

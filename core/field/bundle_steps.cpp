@@ -1126,6 +1126,12 @@ struct NearArrivals {
     [[nodiscard]] std::uint32_t element(std::size_t i) const {
         return static_cast<std::uint32_t>(near.element[i]);
     }
+    // Those of i .. that the bits name join others.
+    void leave(std::size_t i, std::uint32_t bits, double unit, ActiveElements& others) const {
+        for (; bits != 0; bits &= bits - 1) {
+            others.take(near, i + static_cast<std::size_t>(std::countr_zero(bits)), unit);
+        }
+    }
 };
 
 template <class Tag>
@@ -1135,11 +1141,20 @@ HWY_INLINE std::uint32_t lane_bits(Tag d, M<Tag> mask) {
     return bytes[0] | std::uint32_t{bytes[1]} << 8;
 }
 
-// Some elements of one stage of a window: those with peaks above the first cut enter `strong`,
-// others with peaks above the second one `weak`. In float lengths are in units.
+// Where elements go that have peaks above the cut of the strong ones: they enter `strong`, or are
+// of another stage.
+template <class Real>
+struct StrongOnes {
+    StageEntries<Real>* entries = nullptr;
+    ActiveElements* others = nullptr;
+    double unit = 1;  // of the others
+};
+
+// Some elements of one stage of a window: the strong ones, and others with peaks above the second
+// cut, which enter `weak`. In float lengths are in units.
 template <class Real, Shape shape, KernelKind kind, class Source>
 void enter_group(const Source& source, const Entering& on, const CoarseCuts& cuts,
-                 std::size_t first, std::size_t end, StageEntries<Real>& strong,
+                 std::size_t first, std::size_t end, const StrongOnes<Real>& strong,
                  StageEntries<Real>* weak, StageSums& sums) {
     using Tag = typename Source::Lanes;
     constexpr bool is_coarse = sizeof(Real) == sizeof(float);
@@ -1154,11 +1169,12 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
     V<Tag> weak_above = zero, weak_below = zero, weak_slope = zero;
     M<Tag> bad = hn::FirstN(d, 0);
     alignas(64) Real quads[3][4 * lanes_at_most];  // of each lane, side by side
-    const std::size_t strong_before = strong.size, weak_before = weak != nullptr ? weak->size : 0;
-    strong.make_room(end - first);
+    const std::size_t strong_before = strong.entries != nullptr ? strong.entries->size : 0,
+                      weak_before = weak != nullptr ? weak->size : 0;
+    if (strong.entries != nullptr) strong.entries->make_room(end - first);
     if (weak != nullptr) weak->make_room(end - first);
     for (std::size_t i = first; i < end; i += N) {
-        const M<Tag> valid = hn::FirstN(d, end - i);
+        M<Tag> valid = hn::FirstN(d, end - i);
         const Arrivals<Tag, shape> arrivals = source.at(i);
         const Seen<Tag, shape>& e = arrivals.e;
         const M<Tag> kinked = hn::Lt(arrivals.inverse, zero);
@@ -1175,6 +1191,12 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         M<Tag> is_strong = valid, enters = valid;
         if constexpr (is_coarse) {
             is_strong = hn::AndNot(hn::Le(value, c(cuts.strong)), valid);
+            if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
+                if (strong.others != nullptr) {
+                    source.leave(i, lane_bits(d, is_strong), strong.unit, *strong.others);
+                    valid = hn::AndNot(is_strong, valid);
+                }
+            }
             enters = hn::AndNot(hn::Le(value, c(cuts.weak)), valid);
         }
         const M<Tag> leaves = hn::AndNot(enters, valid);
@@ -1247,11 +1269,14 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
                 ++stage.size;
             }
         };
-        enter(strong, is_strong);
+        if (strong.entries != nullptr) enter(*strong.entries, is_strong);
         if (weak != nullptr) enter(*weak, is_weak);
     }
     constexpr std::size_t group = group_of(shape, kind);
-    strong.count[group] = static_cast<std::uint32_t>(strong.size - strong_before);
+    if (strong.entries != nullptr) {
+        strong.entries->count[group] =
+            static_cast<std::uint32_t>(strong.entries->size - strong_before);
+    }
     if (weak != nullptr) weak->count[group] = static_cast<std::uint32_t>(weak->size - weak_before);
     sums.error += sum_of(error);
     sums.slope += sum_of(slope);
@@ -1285,19 +1310,25 @@ StageSums coarse(const Field& field, const Stretch& stretch, double scale, const
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
         const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
-        enter_group<float, shape, kind>(source, on, cuts, first, end, window.strong, &window.weak,
-                                        sums);
+        enter_group<float, shape, kind>(source, on, cuts, first, end, {&window.strong},
+                                        &window.weak, sums);
     });
     return sums;
 }
 
 // c - M: beside what the elements' places are off by, and their own roundings, that of the middle's
-// place and of the difference; |place| <= |c - M| + |middle|.
-StageSums coarse_near(const NearElements& near, const NearStretch& stretch, double middle,
-                      const CoarseCuts& cuts, Window& window) {
+// place and of the difference; |place| <= |c - M| + |middle|. `middle` is that of the window,
+// relative to the elements' place.
+StageSums enter_from_near(const NearElements& near, const NearStretch& stretch, double middle,
+                          const CoarseCuts& cuts, const StrongOnes<float>& strong,
+                          StageEntries<float>& weak) {
     StageSums sums;
-    window.strong.clear();
-    window.weak.clear();
+    if (strong.entries != nullptr) strong.entries->clear();
+    if (strong.others != nullptr) {
+        strong.others->make_room(near.size());
+        strong.others->end(0);
+    }
+    weak.clear();
     const Reach<float> reach = reach_of(stretch);
     const auto place = [&](double base, double axis) {
         return static_cast<float>(base + middle * axis);
@@ -1317,12 +1348,18 @@ StageSums coarse_near(const NearElements& near, const NearStretch& stretch, doub
                       .least_rho = std::sqrt(double{least_square<float>}) * more};
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = near.first[group], end_of_group = near.first[group + 1];
+        if (strong.others != nullptr) strong.others->begin(group);
         if (first == end_of_group) return;
         const NearArrivals<shape> source{near, reach, from};
-        enter_group<float, shape, kind>(source, on, cuts, first, end_of_group, window.strong,
-                                        &window.weak, sums);
+        enter_group<float, shape, kind>(source, on, cuts, first, end_of_group, strong, &weak, sums);
     });
+    if (strong.others != nullptr) strong.others->end(strong.others->size());
     return sums;
+}
+
+StageSums coarse_near(const NearElements& near, const NearStretch& stretch, double middle,
+                      const CoarseCuts& cuts, Window& window) {
+    return enter_from_near(near, stretch, middle, cuts, {&window.strong}, window.weak);
 }
 
 StageSums fine(const Field& field, const Stretch& stretch, double scale,
@@ -1334,9 +1371,15 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
         const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
-        enter_group<double, shape, kind>(source, on, {}, first, end, window.fine, nullptr, sums);
+        enter_group<double, shape, kind>(source, on, {}, first, end, {&window.fine}, nullptr, sums);
     });
     return sums;
+}
+
+StageSums faint(const NearElements& near, const NearStretch& stretch, double middle, double unit,
+                double cut, Window& window, ActiveElements& others) {
+    return enter_from_near(near, stretch, middle, {.strong = cut, .weak = 0},
+                           {.others = &others, .unit = unit}, window.faint);
 }
 
 }  // namespace
@@ -1344,7 +1387,7 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
 const BundleSteps& bundle_steps_of_target() {
     static const BundleSteps steps{bound,      bound_clusters, bend,       enter_near,
                                    place_near, bound_members,  bound_near, bend_near,
-                                   coarse,     coarse_near,    fine};
+                                   coarse,     coarse_near,    fine,       faint};
     return steps;
 }
 
@@ -1392,18 +1435,14 @@ void ActiveElements::make_room(std::size_t count) {
     for (auto* values : {&least, &most, &peak, &inverse}) values->assign(size, 0.0);
 }
 
-void ActiveElements::take(const NearElements& near, double unit) {
-    const std::size_t count = near.size();
-    make_room(count);
-    first = near.first;
-    for (std::size_t i = 0; i < count; ++i) {
-        element[i] = near.element[i];
-        least[i] = double{near.least[i]};
-        most[i] = double{near.most[i]};
-        peak[i] = double{near.peak[i]};
-        inverse[i] = double{near.inverse[i]} / unit;
-    }
-    end(count);
+void ActiveElements::take(const NearElements& near, std::size_t i, double unit) {
+    const std::size_t count = size();
+    element[count] = near.element[i];
+    least[count] = double{near.least[i]};
+    most[count] = double{near.most[i]};
+    peak[count] = double{near.peak[i]};
+    inverse[count] = double{near.inverse[i]} / unit;
+    ++first[field_groups];
 }
 
 void NearElements::make_room(std::size_t count) {

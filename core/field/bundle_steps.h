@@ -56,10 +56,12 @@ struct ActiveElements {
               std::span<const std::uint32_t> elements);
     // The members of clusters.
     void take_members(const Clusters& clusters, const ActiveElements& of);
-    // With their bounds.
-    void take(const NearElements& near, double unit);
+    // Element i of those, with its bounds, as the last one: there has to be room.
+    void take(const NearElements& near, std::size_t i, double unit);
     // Keeps nothing.
     void make_room(std::size_t count);
+    // What is taken from now on is of that group.
+    void begin(std::size_t group) { first[group] = first[field_groups]; }
     // All groups are there: so many elements.
     void end(std::size_t count);
 };
@@ -136,6 +138,10 @@ struct BundleSteps {
     // The window's fine entries: all.
     StageSums (*fine)(const Field& field, const Stretch& stretch, double scale,
                       const ActiveElements& active, Window& window);
+    // Parts elements in float: those with |F| certainly at most `cut` become the window's faint
+    // entries, in units, the others join `others`.
+    StageSums (*faint)(const NearElements& near, const NearStretch& stretch, double middle,
+                       double unit, double cut, Window& window, ActiveElements& others);
 };
 
 // For this machine.

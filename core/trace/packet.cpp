@@ -128,30 +128,33 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 return any(all, Lanes::walking);
             }
             bundle_field_.complete(window);
-            // What the fine list leaves open, with one that leaves out next to nothing.
-            const auto enclose = [&](Lanes::State otherwise) {
+            const auto enclose = [&](const Window& in, double left_out, Lanes::State pinned,
+                                     Lanes::State otherwise) {
                 const std::uint64_t evaluations =
-                    steps.enclose(window, T, settings.greatest_cell, 0, part.first, part.end,
-                                  Lanes::hidden, Lanes::hidden, lanes_);
-                if (!any(part, Lanes::hidden)) return evaluations;
-                const Window& refined = bundle_field_.refined();
+                    steps.enclose(in, T, unit, settings.greatest_cell, left_out, part.first,
+                                  part.end, pinned, otherwise, lanes_);
+                counts.evaluations += evaluations;
+                counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
+            };
+            enclose(window, 0, Lanes::hidden, Lanes::hidden);
+            // What the fine list leaves open, with one that leaves out next to nothing.
+            if (any(part, Lanes::hidden)) {
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
-                const double left_out = window.fine_bounds.above + window.fine_bounds.below;
-                return evaluations + steps.enclose(refined, T, settings.greatest_cell, left_out,
-                                                   part.first, part.end, Lanes::undecided,
-                                                   otherwise, lanes_);
-            };
-            std::uint64_t fine = enclose(Lanes::doubtful);
+                enclose(bundle_field_.finer(), window.fine_bounds.above + window.fine_bounds.below,
+                        Lanes::undecided, Lanes::doubtful);
+            }
             if (any(part, Lanes::doubtful)) {
                 counts.skipping.rays_doubtful += static_cast<std::uint64_t>(
                     std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                                std::int32_t{Lanes::doubtful}));
-                fine += steps.walk_again(window, T, part.first, part.end, lanes_);
-                fine += enclose(Lanes::undecided);
+                const Window& refined = bundle_field_.refined();
+                const std::uint64_t again =
+                    steps.walk_again(refined, T, part.first, part.end, lanes_);
+                counts.evaluations += again;
+                counts.element_evaluations += again * refined.fine.size;
+                enclose(refined, 0, Lanes::undecided, Lanes::undecided);
             }
-            counts.evaluations += fine;
-            counts.element_evaluations += fine * window.fine.size;
             if (surfaces != nullptr) {
                 found += surface_in(window, part, field, limit, *surfaces);
             }

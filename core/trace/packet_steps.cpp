@@ -1,7 +1,9 @@
 #include "core/trace/packet_steps.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "core/math/instruction_sets.h"
 
@@ -95,10 +97,10 @@ HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
 template <class Tag>
 HWY_INLINE void add(Tag d, const StageEntries<hn::TFromD<Tag>>& stage, const Vec3v<Tag>& p,
                     const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
-    for_groups(stage.count, [&]<Shape shape, KernelKind kind>(std::size_t first,
-                                                              std::uint32_t count) HWY_ATTR {
-        add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum);
-    });
+    for_groups(stage.count,
+               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+                   add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum);
+               });
 }
 
 template <class Tag>
@@ -458,7 +460,8 @@ Walked walk(const Window& window, double threshold, double unit, std::size_t fir
 
 std::uint64_t walk_again(const Window& window, double threshold, std::size_t first, std::size_t end,
                          Lanes& lanes) {
-    if (!window.fine_usable) {
+    // `faint` entries are not walked along.
+    if (!window.fine_usable || window.faint.size > 0) {
         for (std::size_t k = first; k < end; ++k) {
             if (lanes.state[k] != Lanes::doubtful) continue;
             lanes.state[k] = Lanes::undecided;
@@ -518,45 +521,120 @@ double common_cell(double half_width) {
     return least == power(half_width * (1 + 0x1p-47)) ? least : 0;
 }
 
+// Vectors of doubles for as many lanes as one of floats has.
+constexpr std::size_t halves = HWY_TARGET == HWY_SCALAR ? 1 : 2;
+
+template <std::size_t n, class Visit>
+HWY_INLINE void for_each_of(const Visit& visit) {
+    visit(std::integral_constant<std::size_t, 0>());
+    if constexpr (n > 1) visit(std::integral_constant<std::size_t, 1>());
+}
+
+template <Shape shape, KernelKind kind, std::size_t n>
+HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint32_t count,
+                               const Vec3v<D> (&p)[n], const Vec3v<D> (&direction)[n],
+                               FieldValue<D> (&sum)[n]) {
+    for (const auto* const end = entry + count; entry != end; ++entry) {
+        for_each_of<n>([&](auto half) HWY_ATTR {
+            V<D> square;
+            const Vec3v<D> away = away_from<shape>(d, *entry, p[half], square);
+            const KernelValue<D> value =
+                kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
+            sum[half].f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum[half].f);
+            const V<D> slope = hn::Mul(hn::Set(d, entry->slope), value.dk);
+            sum[half].slope = hn::MulAdd(slope, dot<D>(away, direction[half]), sum[half].slope);
+        });
+    }
+}
+
+template <Shape shape, KernelKind kind>
+HWY_INLINE void add_faint_group(F d, const BundleEntry<float>* entry, std::uint32_t count,
+                                const Vec3v<F>& p, V<F>& sum) {
+    for (const auto* const end = entry + count; entry != end; ++entry) {
+        V<F> square;
+        away_from<shape>(d, *entry, p, square);
+        const V<F> k = kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square))).k;
+        sum = hn::MulAdd(hn::Set(d, entry->strength), k, sum);
+    }
+}
+
+// Of the first n halves of a vector of floats, in double: n <= halves.
+template <std::size_t n>
+HWY_INLINE V<F> narrowed(const V<D> (&x)[n], double factor) {
+    const hn::Rebind<float, D> narrow;
+    const V<D> by = hn::Set(D(), factor);
+    const auto lo = hn::DemoteTo(narrow, hn::Mul(x[0], by));
+#if HWY_TARGET == HWY_SCALAR
+    return lo;
+#else
+    return hn::Combine(F(), hn::DemoteTo(narrow, hn::Mul(x[n - 1], by)), lo);
+#endif
+}
+
+// f of the fine stage, and the slope of its entries in double.
+template <std::size_t n>
+void evaluate_fine(const Window& window, double threshold, double unit, const Vec3v<D> (&p)[n],
+                   const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n]) {
+    const D d;
+    const F narrow;
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        value[half] = {hn::Set(d, -threshold), hn::Zero(d)};
+    });
+    for_groups(window.fine.count,
+               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+                   add_fine_group<shape, kind>(d, window.fine.entry.data() + first, count, p,
+                                               direction, value);
+               });
+    if (window.faint.size == 0) return;
+    V<D> x[n], y[n], z[n];
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        x[half] = p[half].x;
+        y[half] = p[half].y;
+        z[half] = p[half].z;
+    });
+    const Vec3v<F> near{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
+    V<F> faint = hn::Zero(narrow);
+    for_groups(window.faint.count, [&]<Shape shape, KernelKind kind>(std::size_t first,
+                                                                     std::uint32_t count) HWY_ATTR {
+        add_faint_group<shape, kind>(narrow, window.faint.entry.data() + first, count, near, faint);
+    });
+    alignas(64) float sums[HWY_MAX_BYTES / sizeof(float)];
+    hn::Store(faint, narrow, sums);
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        const auto sum = hn::Load(hn::Rebind<float, D>(), sums + half * hn::Lanes(d));
+        value[half].f = hn::Add(value[half].f, hn::PromoteTo(d, sum));
+    });
+}
+
+struct Enclosing {
+    const Window& window;
+    double threshold, unit, half_width;
+    double common_cell;  // see there
+    double left_out;
+};
+
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
 // f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
 // least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
 // In a refined window g is another sum, and what rises before m - delta is that of the walk,
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
+// The enclosures of a vector of lanes, as far as they have come.
 struct Enclosed {
+    M<D> open;    // more steps may bring more
     M<D> done;    // lo .. hi are the grid lines about the root
     V<D> lo, hi;  // otherwise f < 0 up to lo, and, unless it is infinite, the root before hi
-    std::size_t steps;
-};
+    V<D> m;       // where to look next
+    V<D> cell, inverse_cell;
 
-struct Enclosing {
-    const Window& window;
-    double threshold, half_width;
-    double common_cell;  // see there
-    double left_out;
-};
-
-HWY_INLINE Enclosed enclose_lanes(const Enclosing& task, const Vec3v<D>& direction, V<D> m,
-                                  M<D> open) {
-    const D d;
-    const Window& window = task.window;
-    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, value); };
-    const StageBounds& bounds = window.fine_bounds;
-    const V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
-    const V<D> zero = hn::Zero(d);
-    const V<D> cell =
-        task.common_cell > 0 ? c(task.common_cell) : cell_of(d, task.half_width, direction);
-    const V<D> inverse_cell = hn::Div(c(1), cell);
-    std::size_t steps = 0;
-    V<D> lo = zero, hi = zero;
-    V<D> outside = c(window.begin);     // f < 0 up to there
-    V<D> inside = c(infinity<double>);  // and a root before this
-    M<D> done = hn::FirstN(d, 0);
-    for (int step = 0; step < 4 && !hn::AllFalse(d, open); ++step) {
-        steps += hn::CountTrue(d, open);
-        const Vec3v<D> p = place(window, direction, m);
-        const FieldValue<D> value = evaluate(d, window.fine, task.threshold, p, direction);
+    // With f and its slope at m.
+    HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value) {
+        const D d;
+        const Window& window = task.window;
+        const auto c = [&](double x) HWY_ATTR { return hn::Set(d, x); };
+        const StageBounds& bounds = window.fine_bounds;
+        const V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
+        const V<D> zero = hn::Zero(d);
         const V<D> f_hi = hn::Add(value.f, c(bounds.above));
         const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
         const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
@@ -581,62 +659,114 @@ HWY_INLINE Enclosed enclose_lanes(const Enclosing& task, const Vec3v<D>& directi
         const V<D> rounding = hn::Mul(hn::Add(m, delta), c(0x1p-51));
         const V<D> from = hn::Sub(hn::Add(m, first_x), rounding);
         const V<D> to = hn::Add(hn::Add(m, last_x), rounding);
-        outside = hn::IfThenElse(hn::And(open, firm), from, outside);
-        inside = hn::IfThenElse(hn::And(open, firm), to, inside);
         const V<D> line = hn::Mul(hn::Floor(hn::Mul(from, inverse_cell)), cell);
         const V<D> next = hn::Add(line, cell);
+        const M<D> known = hn::And(open, firm);
         const M<D> decided =
-            hn::And(hn::And(open, firm), hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
-                                                 // finer cells than 8 ulp are made by other means
-                                                 hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
-        lo = hn::IfThenElse(decided, line, lo);
-        hi = hn::IfThenElse(decided, next, hi);
+            hn::And(known, hn::And(hn::And(hn::Gt(from, line), hn::Lt(to, next)),
+                                   // finer cells than 8 ulp are made by other means
+                                   hn::Gt(cell, hn::Mul(m, c(0x1p-48)))));
+        lo = hn::IfThenElse(known, hn::IfThenElse(decided, line, from), lo);
+        hi = hn::IfThenElse(known, hn::IfThenElse(decided, next, to), hi);
         done = hn::Or(done, decided);
         // The next m lies within delta of this one, so that g still rises up to there.
-        open = hn::AndNot(decided, hn::And(open, firm));
+        open = hn::AndNot(decided, known);
         m = hn::IfThenElse(open, hn::NegMulAdd(value.f, inverse, m), m);
     }
-    return {done, hn::IfThenElse(done, lo, outside), hn::IfThenElse(done, hi, inside), steps};
+};
+
+HWY_INLINE Enclosed not_enclosed(const Enclosing& task, const Vec3v<D>& direction, V<D> m,
+                                 M<D> lanes) {
+    const D d;
+    const V<D> cell = task.common_cell > 0 ? hn::Set(d, task.common_cell)
+                                           : cell_of(d, task.half_width, direction);
+    return {lanes,
+            hn::FirstN(d, 0),
+            hn::Set(d, task.window.begin),
+            hn::Set(d, infinity<double>),
+            m,
+            cell,
+            hn::Div(hn::Set(d, 1), cell)};
+}
+
+// Returns the pairs of a lane and a step.
+template <std::size_t n>
+HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&direction)[n],
+                                     Enclosed (&enclosed)[n]) {
+    const D d;
+    std::size_t steps = 0;
+    for (int step = 0; step < 4; ++step) {
+        std::size_t open = 0;
+        for_each_of<n>([&](auto half) HWY_ATTR { open += hn::CountTrue(d, enclosed[half].open); });
+        if (open == 0) break;
+        steps += open;
+        Vec3v<D> p[n];
+        FieldValue<D> value[n];
+        for_each_of<n>([&](auto half) HWY_ATTR {
+            p[half] = place(task.window, direction[half], enclosed[half].m);
+        });
+        evaluate_fine(task.window, task.threshold, task.unit, p, direction, value);
+        for_each_of<n>([&](auto half) HWY_ATTR { enclosed[half].take(task, value[half]); });
+    }
+    return steps;
 }
 
 // Lanes that stand alone are gathered from here and there.
 struct Batch {
-    alignas(64) double dx[widest] = {}, dy[widest] = {}, dz[widest] = {}, t[widest] = {};
-    std::uint32_t lane[widest];
+    static constexpr std::size_t room = HWY_MAX_BYTES / sizeof(float);
+    alignas(64) double dx[room] = {}, dy[room] = {}, dz[room] = {}, t[room] = {};
+    std::uint32_t lane[room];
     std::size_t count = 0;
 };
 
-std::uint64_t enclose_batch(const Enclosing& task, Lanes::State pinned, Lanes::State otherwise,
-                            Batch& batch, Lanes& lanes) {
+// What becomes of lanes that are not done.
+struct Outcome {
+    Lanes::State pinned, otherwise;
+};
+
+// The first 8 n of a batch, or as many as n vectors have.
+template <std::size_t n>
+std::uint64_t enclose_batch(const Enclosing& task, const Outcome& outcome, Batch& batch,
+                            Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
-    std::uint64_t steps = 0;
-    for (std::size_t first = 0; first < batch.count; first += N) {
-        const Vec3v<D> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first),
-                                 hn::Load(d, batch.dz + first)};
-        const Enclosed enclosed = enclose_lanes(task, direction, hn::Load(d, batch.t + first),
-                                                hn::FirstN(d, batch.count - first));
-        steps += enclosed.steps;
-        alignas(64) double lo[widest], hi[widest];
-        hn::Store(enclosed.lo, d, lo);
-        hn::Store(enclosed.hi, d, hi);
-        const std::uint64_t hits = bits_of(d, enclosed.done);
-        for (std::size_t k = 0; k < N && first + k < batch.count; ++k) {
-            const std::uint32_t lane = batch.lane[first + k];
+    Vec3v<D> direction[n];
+    Enclosed enclosed[n];
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        const std::size_t at = half * N;
+        direction[half] = {hn::Load(d, batch.dx + at), hn::Load(d, batch.dy + at),
+                           hn::Load(d, batch.dz + at)};
+        enclosed[half] = not_enclosed(task, direction[half], hn::Load(d, batch.t + at),
+                                      hn::FirstN(d, batch.count - std::min(at, batch.count)));
+    });
+    const std::uint64_t steps = enclose_lanes(task, direction, enclosed);
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        alignas(64) double lo[HWY_MAX_BYTES / sizeof(double)], hi[HWY_MAX_BYTES / sizeof(double)];
+        hn::Store(enclosed[half].lo, d, lo);
+        hn::Store(enclosed[half].hi, d, hi);
+        const std::uint64_t hits = bits_of(d, enclosed[half].done);
+        for (std::size_t k = 0; k < N && half * N + k < batch.count; ++k) {
+            const std::uint32_t lane = batch.lane[half * N + k];
             lanes.state[lane] = (hits >> k & 1) != 0       ? Lanes::hit
-                                : hi[k] < infinity<double> ? pinned
-                                                           : otherwise;
+                                : hi[k] < infinity<double> ? outcome.pinned
+                                                           : outcome.otherwise;
             lanes.t_lo[lane] = lo[k];
             lanes.t_hi[lane] = hi[k];
             lanes.t[lane] = 0.5 * (lo[k] + hi[k]);
         }
-    }
+    });
     batch.count = 0;
     return steps;
 }
 
-std::uint64_t enclose(const Window& window, double threshold, double half_width, double left_out,
-                      std::size_t first, std::size_t end, Lanes::State pinned,
+std::uint64_t enclose_batch(const Enclosing& task, const Outcome& outcome, Batch& batch,
+                            Lanes& lanes) {
+    if (batch.count > hn::Lanes(D())) return enclose_batch<halves>(task, outcome, batch, lanes);
+    return batch.count > 0 ? enclose_batch<1>(task, outcome, batch, lanes) : 0;
+}
+
+std::uint64_t enclose(const Window& window, double threshold, double unit, double half_width,
+                      double left_out, std::size_t first, std::size_t end, Lanes::State pinned,
                       Lanes::State otherwise, Lanes& lanes) {
     if (!window.fine_usable) {
         for (std::size_t k = first; k < end; ++k) {
@@ -648,49 +778,60 @@ std::uint64_t enclose(const Window& window, double threshold, double half_width,
         return 0;
     }
     const D d;
-    const hn::Rebind<std::int32_t, D> narrow;
-    const std::size_t N = hn::Lanes(d);
+    const F narrow;
+    const hn::Rebind<std::int32_t, D> state_lanes;
+    const std::size_t N = hn::Lanes(d), step = halves * N;
     const auto set = [&](Lanes::State state)
                          HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
-    const Enclosing task{window, threshold, half_width, common_cell(half_width), left_out};
+    const Enclosing task{window, threshold, unit, half_width, common_cell(half_width), left_out};
+    const Outcome outcome{pinned, otherwise};
     Batch batch;
     std::uint64_t steps = 0;
-    for (std::size_t k = first; k < end; k += N) {
-        const M<D> candidates = lanes_in(d, Lanes::candidate, lanes, k, end);
-        const std::size_t count = hn::CountTrue(d, candidates);
+    for (std::size_t k = first; k < end; k += step) {
+        const M<F> candidates = lanes_in(narrow, Lanes::candidate, lanes, k, end);
+        const std::size_t count = hn::CountTrue(narrow, candidates);
         if (count == 0) continue;
-        if (2 * count <= N) {
-            const std::uint64_t bits = bits_of(d, candidates);
-            for (std::size_t i = 0; i < N; ++i) {
-                if ((bits >> i & 1) == 0) continue;
+        if (2 * count <= step) {
+            std::uint64_t bits = bits_of(narrow, candidates);
+            for (; bits != 0; bits &= bits - 1) {
+                const std::size_t lane = k + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
                 const std::size_t at = batch.count++;
-                batch.lane[at] = static_cast<std::uint32_t>(k + i);
-                batch.dx[at] = lanes.dx[k + i];
-                batch.dy[at] = lanes.dy[k + i];
-                batch.dz[at] = lanes.dz[k + i];
-                batch.t[at] = lanes.t[k + i];
-                if (batch.count < widest) continue;
-                steps += enclose_batch(task, pinned, otherwise, batch, lanes);
+                batch.lane[at] = static_cast<std::uint32_t>(lane);
+                batch.dx[at] = lanes.dx[lane];
+                batch.dy[at] = lanes.dy[lane];
+                batch.dz[at] = lanes.dz[lane];
+                batch.t[at] = lanes.t[lane];
+                if (batch.count == step) steps += enclose_batch(task, outcome, batch, lanes);
             }
             continue;
         }
-        const Vec3v<D> direction{hn::LoadU(d, lanes.dx + k), hn::LoadU(d, lanes.dy + k),
-                                 hn::LoadU(d, lanes.dz + k)};
-        const Enclosed enclosed =
-            enclose_lanes(task, direction, hn::LoadU(d, &lanes.t[k]), candidates);
-        steps += enclosed.steps;
-        const M<D> is_pinned = hn::Lt(enclosed.hi, hn::Set(d, infinity<double>));
-        const V<D> state = hn::IfThenElse(enclosed.done, set(Lanes::hit),
-                                          hn::IfThenElse(is_pinned, set(pinned), set(otherwise)));
-        const V<D> states = hn::IfThenElse(candidates, state, states_of(lanes, k));
-        hn::StoreU(hn::DemoteTo(narrow, states), narrow, &lanes.state[k]);
-        hn::BlendedStore(enclosed.lo, candidates, d, lanes.t_lo + k);
-        hn::BlendedStore(enclosed.hi, candidates, d, lanes.t_hi + k);
-        hn::BlendedStore(hn::Mul(hn::Set(d, 0.5), hn::Add(enclosed.lo, enclosed.hi)), candidates, d,
-                         &lanes.t[k]);
+        Vec3v<D> direction[halves];
+        Enclosed enclosed[halves];
+        M<D> taken[halves];
+        for_each_of<halves>([&](auto half) HWY_ATTR {
+            const std::size_t at = k + half * N;
+            direction[half] = {hn::LoadU(d, lanes.dx + at), hn::LoadU(d, lanes.dy + at),
+                               hn::LoadU(d, lanes.dz + at)};
+            taken[half] = lanes_in(d, Lanes::candidate, lanes, at, std::max(at, end));
+            enclosed[half] =
+                not_enclosed(task, direction[half], hn::LoadU(d, &lanes.t[at]), taken[half]);
+        });
+        steps += enclose_lanes(task, direction, enclosed);
+        for_each_of<halves>([&](auto half) HWY_ATTR {
+            const std::size_t at = k + half * N;
+            const Enclosed& e = enclosed[half];
+            const M<D> is_pinned = hn::Lt(e.hi, hn::Set(d, infinity<double>));
+            const V<D> state = hn::IfThenElse(
+                e.done, set(Lanes::hit), hn::IfThenElse(is_pinned, set(pinned), set(otherwise)));
+            const V<D> states = hn::IfThenElse(taken[half], state, states_of(lanes, at));
+            hn::StoreU(hn::DemoteTo(state_lanes, states), state_lanes, &lanes.state[at]);
+            hn::BlendedStore(e.lo, taken[half], d, lanes.t_lo + at);
+            hn::BlendedStore(e.hi, taken[half], d, lanes.t_hi + at);
+            hn::BlendedStore(hn::Mul(hn::Set(d, 0.5), hn::Add(e.lo, e.hi)), taken[half], d,
+                             &lanes.t[at]);
+        });
     }
-    if (batch.count > 0) steps += enclose_batch(task, pinned, otherwise, batch, lanes);
-    return steps;
+    return steps + enclose_batch(task, outcome, batch, lanes);
 }
 
 struct SurfaceSum {
@@ -849,8 +990,8 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(stage->count, [&]<Shape shape, KernelKind kind>(
                                          std::size_t group, std::uint32_t count) HWY_ATTR {
-                add_look<shape, kind>(d, stage->entry.data() + group,
-                                      stage->element.data() + group, count, field, p, sum);
+                add_look<shape, kind>(d, stage->entry.data() + group, stage->element.data() + group,
+                                      count, field, p, sum);
             });
         }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));

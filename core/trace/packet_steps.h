@@ -65,7 +65,7 @@ struct PacketSteps {
                    std::size_t end, Lanes& lanes);
 
     // The same in double, from the window's begin, for the doubtful ones: they become candidates,
-    // walk on or are undecided. Counts pairs of a lane and a step.
+    // walk on or are undecided. The window has no faint entries. Counts pairs of a lane and a step.
     std::uint64_t (*walk_again)(const Window& window, double threshold, std::size_t first,
                                 std::size_t end, Lanes& lanes);
 
@@ -74,7 +74,7 @@ struct PacketSteps {
     // become hits; or `pinned` where the root lies in t_lo .. t_hi but a grid line does too; or
     // `otherwise`. For a refined window `left_out` is what the elements that it has more than the
     // window of the walk add to f or take away, at most.
-    std::uint64_t (*enclose)(const Window& window, double threshold, double half_width,
+    std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
                              double left_out, std::size_t first, std::size_t end,
                              Lanes::State pinned, Lanes::State otherwise, Lanes& lanes);
 

@@ -77,6 +77,14 @@ TEST(Clusters, HoldTheirMembers) {
     }
 }
 
+TEST(Clusters, AreTheSameForAnyNumberOfThreads) {
+    const Scene scene = crowd(40'000, tools::announced_seed(67));
+    const Field field = compile(scene);
+    ASSERT_FALSE(field.clusters.empty());
+    EXPECT_TRUE(field == compile(scene, 2));
+    EXPECT_TRUE(field == compile(scene, 5));
+}
+
 TEST(Clusters, FewElementsHaveNone) {
     EXPECT_TRUE(compile(crowd(least_clustered - 1, 62)).clusters.empty());
     EXPECT_FALSE(compile(crowd(least_clustered, 62)).clusters.empty());
@@ -208,6 +216,10 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                     const Vec3d p = origin + random.uniform(window.begin, window.end) * d;
                     std::vector<bool> kept(field.size(), false);
                     for (const std::uint32_t i : window.fine.elements()) kept[i] = true;
+                    for (const std::uint32_t i : window.faint.elements()) {
+                        EXPECT_FALSE(kept[i]);
+                        kept[i] = true;
+                    }
                     double above = 0, below = 0;
                     for (std::size_t i = 0; i < field.size(); ++i) {
                         if (kept[i]) continue;
@@ -294,7 +306,7 @@ TEST(Clusters, MembersOfWideClustersAreNoNearerThanTheirBounds) {
 // place relative to its cluster has lost digits.
 TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
     const std::uint64_t first = tools::announced_seed(65);
-    int windows = 0, sparse = 0;
+    int windows = 0, sparse = 0, faint = 0, finer_faint = 0;
     double share = 0;
     for (std::uint64_t seed = first; seed < first + 8; ++seed) {
         Scene scene = crowd(2200, seed);
@@ -322,17 +334,26 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
                     along.complete(window);
                     const Vec3d d = unit(bundle.axis + 0.9 * spread * random.uniform(0, 1) *
                                                            unit(random.in_cube(1)));
-                    share = std::max(
-                        share, tools::expect_stages_hold(field, window, origin, d,
-                                                         random.uniform(window.begin, window.end)));
+                    const double t = random.uniform(window.begin, window.end);
+                    share = std::max(share, tools::expect_stages_hold(field, window, origin, d, t));
+                    faint += window.faint.size > 0;
                     ++windows;
                     sparse += is_sparse;
+                    if (random.below(8) != 0) return true;
+                    const Window &finer = along.finer(), &refined = along.refined();
+                    tools::expect_stages_hold(field, finer, origin, d, t);
+                    tools::expect_stages_hold(field, refined, origin, d, t);
+                    EXPECT_LT(finer.fine_bounds.above, 2 * refined.fine_bounds.above + 1e-14);
+                    finer_faint += finer.faint.size > 0;
+                    EXPECT_EQ(refined.faint.size, 0u);
                     return true;
                 });
         }
     }
     EXPECT_GT(windows, 500);
     EXPECT_GT(sparse, 50);
+    EXPECT_GT(faint, 200);
+    EXPECT_GT(finer_faint, 20);
     EXPECT_GT(share, 0.1);
     std::printf("%d windows, %d of sparse fields, up to %.3f of a bound\n", windows, sparse, share);
 }

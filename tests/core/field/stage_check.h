@@ -51,18 +51,22 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
     return sum;
 }
 
-// That the strong entries, those with the weak ones, and the fine ones say of the field what their
-// bounds promise, where the ray from `origin` along d is at t. Returns the greatest share of a
-// bound that was needed.
+// That the strong entries, those with the weak ones, and the fine with the faint ones say of the
+// field what their bounds promise, where the ray from `origin` along d is at t. Returns the
+// greatest share of a bound that was needed.
 inline double expect_stages_hold(const Field& field, const Window& window, const Vec3d& origin,
                                  const Vec3d& d, double t) {
     const Vec3d p = window.middle * (d - window.axis) + (t - window.middle) * d;
-    double exact = 0;
+    double exact = 0, most = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
-        exact += element_value(field, i, origin + t * d) * field.scale;
+        const double value = element_value(field, i, origin + t * d) * field.scale;
+        exact += value;
+        most += std::abs(value);
     }
     const StageValue fine = stage_value(window.fine, field, p, d);
     const Vec3d p_near = (1 / field.unit) * p;
+    const StageValue faint = stage_value(window.faint, field, p_near, d);
+    const double kept_slope = fine.slope + faint.slope / field.unit;
     const StageValue strong = stage_value(window.strong, field, p_near, d);
     const StageValue weak = stage_value(window.weak, field, p_near, d);
     double share = 0;
@@ -70,10 +74,10 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
                             const StageBounds& bounds) {
         SCOPED_TRACE(name);
         // What plain double costs.
-        const double slack = 1e-12 * (1 + std::abs(exact));
+        const double slack = 0x1p-51 * static_cast<double>(field.size() + 8) * (1 + most);
         EXPECT_LE(exact - f, bounds.above + slack);
         EXPECT_LE(f - exact, bounds.below + slack);
-        EXPECT_LE(std::abs(fine.slope * unit - slope),
+        EXPECT_LE(std::abs(kept_slope * unit - slope),
                   bounds.slope + window.fine_bounds.slope * unit + slack);
         share = std::max(
             {share, (exact - f - slack) / bounds.above, (f - exact - slack) / bounds.below});
@@ -83,7 +87,9 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
         expect("coarse", strong.f + weak.f, strong.slope + weak.slope, field.unit,
                window.coarse_bounds);
     }
-    if (window.fine_usable) expect("fine", fine.f, fine.slope, 1, window.fine_bounds);
+    if (window.fine_usable) {
+        expect("fine", fine.f + faint.f, fine.slope, 1, window.fine_bounds);
+    }
     return share;
 }
 
