@@ -13,6 +13,7 @@
 #include "core/render/frame.h"
 #include "core/render/shade.h"
 #include "core/render/tiles.h"
+#include "core/trace/bundle_surfaces.h"
 #include "core/trace/methods/method.h"
 
 namespace ivory {
@@ -49,12 +50,14 @@ struct Canvas {
     TileGrid grid;
     Frame frame;
     std::vector<TileState> tiles;
+    Plane<Looks> looks;  // by tile, of its pixels row by row; unless it is empty. None: not kept
 
-    // Throws std::bad_alloc. `keep_look`: shading again needs no surface but where colours change.
-    Canvas(int width, int height, bool keep_surface, bool keep_look = false)
+    // Throws std::bad_alloc. `keep_looks`: shading again needs no surface but where colours change.
+    Canvas(int width, int height, bool keep_surface, bool keep_looks = false)
         : grid(width, height),
-          frame(width, height, keep_surface, keep_look),
-          tiles(grid.tiles.size()) {}
+          frame(width, height, keep_surface),
+          tiles(grid.tiles.size()),
+          looks(keep_looks ? tiles.size() : 0) {}
 
     // For a field or a view that has changed: lists of the old one prove nothing of the new one.
     // Colours, lights and background leave them valid.

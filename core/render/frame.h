@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "core/render/pages.h"
-#include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
 
 namespace ivory {
@@ -44,24 +43,22 @@ class Plane {
     std::size_t size_ = 0;
 };
 
-// 21 bytes a pixel, 48 more where the surface is kept and 24 more where the looks are.
+// 21 bytes a pixel, 48 more where the surface is kept.
 struct Frame {
     int width, height;  // pixels
     Plane<Status> status;
     Plane<double> t_lo, t_hi;     // set where a root is or may be, and nowhere else
     Plane<Rgba8> color;           // shaded
     Plane<SurfacePoint> surface;  // likewise set where a root may be; empty unless kept
-    Plane<Look> look;             // likewise
 
-    Frame(int frame_width, int frame_height, bool keep_surface, bool keep_look = false)
+    Frame(int frame_width, int frame_height, bool keep_surface)
         : width(frame_width),
           height(frame_height),
           status(size()),
           t_lo(size()),
           t_hi(size()),
           color(size()),
-          surface(keep_surface ? size() : 0),
-          look(keep_look ? size() : 0) {}
+          surface(keep_surface ? size() : 0) {}
 
     [[nodiscard]] std::size_t size() const {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

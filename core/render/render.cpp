@@ -30,6 +30,7 @@ constexpr std::size_t pixels_in_tile = tile_side * tile_side;
 struct TracedTile {
     RayBundle rays;
     std::array<std::uint32_t, pixels_in_tile> pixel;  // in the frame
+    std::array<std::uint16_t, pixels_in_tile> place;  // in the tile, row by row
     BundleIsolations isolations;
     BundleSurfaces surfaces;
     alignas(64) std::array<Rgba8, pixels_in_tile> colors;
@@ -472,6 +473,8 @@ class FrameJob::Work {
                         if (coarser > 0 && on_stride(i, j, coarser)) continue;
                         column[count] = i;
                         row[count] = j;
+                        traced.place[count] =
+                            static_cast<std::uint16_t>((j - rect.y0) * rect.width() + i - rect.x0);
                         traced.pixel[count++] = static_cast<std::uint32_t>(frame.at(i, j));
                     }
                 }
@@ -515,15 +518,17 @@ class FrameJob::Work {
             tile.unresolved_width_max = 0;
         }
         const bool colored = settings_.task != Task::trace;
+        Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
+        if (first && looks != nullptr) looks->forget_all(pixels_in_tile);
         const BundleIsolations& isolations = traced.isolations;
         for (std::size_t k = 0; k < traced.size();) {
             // Neighbours in the frame go there together.
             const std::size_t p = traced.pixel[k];
             if (k + 4 <= traced.size() && traced.pixel[k + 3] == p + 3) {
-                commit_run<4>(traced, k, p, colored);
+                commit_run<4>(traced, k, p, colored, looks);
                 k += 4;
             } else {
-                commit_run<1>(traced, k, p, colored);
+                commit_run<1>(traced, k, p, colored, looks);
                 k += 1;
             }
         }
@@ -539,7 +544,8 @@ class FrameJob::Work {
 
     // `count` rays from k on, whose pixels stand in the frame from p on.
     template <std::size_t count>
-    void commit_run(const TracedTile& traced, std::size_t k, std::size_t p, bool colored) const {
+    void commit_run(const TracedTile& traced, std::size_t k, std::size_t p, bool colored,
+                    Looks* looks) const {
         Frame& frame = canvas_.frame;
         const BundleIsolations& isolations = traced.isolations;
         // Of a size that the compiler knows: no call.
@@ -552,10 +558,10 @@ class FrameJob::Work {
         if (std::none_of(&isolations.status[k], &isolations.status[k] + count, hit)) return;
         copy(isolations.t_lo, k, frame.t_lo, p);
         copy(isolations.t_hi, k, frame.t_hi, p);
-        if (!frame.look.empty()) {
-            for (std::size_t i = 0; i < count; ++i) {
-                if (possibly_hit(isolations.status[k + i]))
-                    frame.look[p + i] = traced.surfaces.look(k + i);
+        if (looks != nullptr) {
+            for (std::size_t i = k; i < k + count; ++i) {
+                if (!possibly_hit(isolations.status[i])) continue;
+                looks->take(traced.place[i], traced.surfaces, i);
             }
         }
         if (!frame.surface.empty()) copy(traced.surfaces.points, k, frame.surface, p);
@@ -596,31 +602,65 @@ class FrameJob::Work {
         } else if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
             const bool looks_hold =
-                !frame.look.empty() && frame.surface.empty() &&
+                !canvas_.looks.empty() && frame.surface.empty() &&
                 !(tile.has_list ? reached_by_recolored(tile.list) : !settings_.recolored.empty());
-            TracedTile& traced = *tally.traced;
-            gather(traced, index, tile.stride, 0, !looks_hold);
-            traced.surfaces.exact = !frame.surface.empty();
-            traced.surfaces.clear(traced.size());
-            std::array<double, pixels_in_tile> m;
-            for (std::size_t k = 0; k < traced.size(); ++k) {
-                const std::size_t p = traced.pixel[k];
-                const bool hit = possibly_hit(frame.status[p]);
-                if (looks_hold && hit) traced.surfaces.set_look(k, frame.look[p]);
-                m[k] = hit ? midpoint(frame.t(p)) : infinity<double>;
-            }
-            if (!looks_hold) find_surface(traced, tile.list, m);
-            paint(traced);
-            for (std::size_t k = 0; k < traced.size(); ++k) {
-                const std::size_t p = traced.pixel[k];
-                frame.color[p] = traced.colors[k];
-                if (!possibly_hit(frame.status[p])) continue;
-                if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
-                if (!frame.look.empty() && !looks_hold) frame.look[p] = traced.surfaces.look(k);
+            if (looks_hold && tile.stride == 1) {
+                paint_looks(index, *tally.traced);
+            } else {
+                look_again(index, looks_hold, *tally.traced);
             }
         }
         tally.shading += Clock::now() - start;
         return true;
+    }
+
+    // A whole tile from what is known of its surface.
+    void paint_looks(std::size_t index, TracedTile& traced) {
+        Frame& frame = canvas_.frame;
+        const PixelRect rect = tiles().rect(index);
+        RayBundle& rays = traced.rays;
+        alignas(64) std::array<double, pixels_in_tile> column, row;
+        std::size_t count = 0;
+        for (int j = rect.y0; j < rect.y1; ++j) {
+            for (int i = rect.x0; i < rect.x1; ++i) {
+                column[count] = i;
+                row[count++] = j;
+            }
+        }
+        primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
+                           row.data(), rays.dx.data(), rays.dy.data(), rays.dz.data());
+        shade_lanes(picture_.lighting, rays, canvas_.looks[index], {traced.colors.data(), count});
+        const auto width = static_cast<std::size_t>(rect.width());
+        for (int j = rect.y0; j < rect.y1; ++j) {
+            const auto* const from = &traced.colors[static_cast<std::size_t>(j - rect.y0) * width];
+            std::copy_n(from, width, &frame.color[frame.at(rect.x0, j)]);
+        }
+    }
+
+    // The surface and its colours at the t that stand in the frame, unless they are known.
+    void look_again(std::size_t index, bool looks_hold, TracedTile& traced) {
+        Frame& frame = canvas_.frame;
+        const TileState& tile = canvas_.tiles[index];
+        Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
+        gather(traced, index, tile.stride, 0, !looks_hold);
+        traced.surfaces.exact = !frame.surface.empty();
+        traced.surfaces.clear(traced.size());
+        std::array<double, pixels_in_tile> m;
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            const std::size_t p = traced.pixel[k];
+            const bool hit = possibly_hit(frame.status[p]);
+            if (looks_hold) traced.surfaces.take(k, *looks, traced.place[k]);
+            m[k] = hit ? midpoint(frame.t(p)) : infinity<double>;
+        }
+        if (!looks_hold) find_surface(traced, tile.list, m);
+        paint(traced);
+        for (std::size_t k = 0; k < traced.size(); ++k) {
+            const std::size_t p = traced.pixel[k];
+            frame.color[p] = traced.colors[k];
+            if (!possibly_hit(frame.status[p])) continue;
+            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
+            if (looks != nullptr) looks->take(traced.place[k], traced.surfaces, k);
+        }
     }
 
     const Picture picture_;

@@ -88,7 +88,7 @@ HWY_INLINE hn::Vec<I> byte_of(V linear, const SrgbTable& table) {
     return hn::Sub(first, one_more);
 }
 
-void shade(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
            std::span<Rgba8> colors) {
     const D d;
     const I di;
@@ -97,8 +97,8 @@ void shade(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), half = hn::Set(d, 0.5F);
     for (std::size_t k = 0; k < colors.size(); k += N) {
         const std::size_t count = std::min(N, colors.size() - k);
-        Vec3v normal{hn::LoadU(d, &surfaces.nx[k]), hn::LoadU(d, &surfaces.ny[k]),
-                     hn::LoadU(d, &surfaces.nz[k])};
+        Vec3v normal{hn::LoadU(d, &looks.nx[k]), hn::LoadU(d, &looks.ny[k]),
+                     hn::LoadU(d, &looks.nz[k])};
         const auto none_there = hn::IsNaN(normal.x);
         if (hn::CountTrue(d, hn::And(none_there, hn::FirstN(d, count))) == count) {
             std::fill_n(&colors[k], count, lighting.background);
@@ -106,8 +106,8 @@ void shade(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces
         }
         const Vec3v to_viewer{hn::Neg(rounded(&rays.dx[k])), hn::Neg(rounded(&rays.dy[k])),
                               hn::Neg(rounded(&rays.dz[k]))};
-        const Vec3v color{hn::LoadU(d, &surfaces.r[k]), hn::LoadU(d, &surfaces.g[k]),
-                          hn::LoadU(d, &surfaces.b[k])};
+        const Vec3v color{hn::LoadU(d, &looks.r[k]), hn::LoadU(d, &looks.g[k]),
+                          hn::LoadU(d, &looks.b[k])};
         const auto none = hn::And(hn::And(hn::Eq(normal.x, zero), hn::Eq(normal.y, zero)),
                                   hn::Eq(normal.z, zero));
         normal = {hn::IfThenElse(none, to_viewer.x, normal.x),
@@ -172,9 +172,9 @@ void shade(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces
 
 }  // namespace
 
-void shade_of_target(const Lighting& lighting, const RayBundle& rays,
-                     const BundleSurfaces& surfaces, std::span<Rgba8> colors) {
-    shade(lighting, rays, surfaces, colors);
+void shade_of_target(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
+                     std::span<Rgba8> colors) {
+    shade(lighting, rays, looks, colors);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -186,10 +186,10 @@ namespace ivory {
 
 HWY_EXPORT(shade_of_target);
 
-void shade_lanes(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+void shade_lanes(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
                  std::span<Rgba8> colors) {
     static_assert(std::endian::native == std::endian::little && sizeof(Rgba8) == 4);
-    HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, rays, surfaces, colors);
+    HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, rays, looks, colors);
 }
 
 }  // namespace ivory

@@ -10,8 +10,8 @@
 
 namespace ivory {
 
-// colors[k]: the light from the surface along ray k, or the background where surfaces.nx[k] is NaN.
-void shade_lanes(const Lighting& lighting, const RayBundle& rays, const BundleSurfaces& surfaces,
+// colors[k]: the light from the surface along ray k, or the background where looks.nx[k] is NaN.
+void shade_lanes(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
                  std::span<Rgba8> colors);
 
 }  // namespace ivory

@@ -12,25 +12,37 @@
 
 namespace ivory {
 
-// What a pixel is shaded from: normal and colour.
-struct Look {
-    float nx, ny, nz, r, g, b;
-};
-
-struct BundleSurfaces {
+// What pixels are shaded from: normals and colours; nx is NaN where there is no surface, or none
+// found yet.
+struct Looks {
     static constexpr std::size_t room = RayBundle::room;
 
-    // Normals and colours to shade with; nx is NaN where there is no surface, or none found yet.
     alignas(64) std::array<float, room> nx, ny, nz, r, g, b;
 
+    // The first `count`, and as many more as a vector that is read whole has.
+    void forget_all(std::size_t count) {
+        std::fill_n(nx.begin(), std::min(count + 16, room),
+                    std::numeric_limits<float>::quiet_NaN());
+    }
+    // Number k is what number i is there.
+    void take(std::size_t k, const Looks& from, std::size_t i) {
+        nx[k] = from.nx[i];
+        ny[k] = from.ny[i];
+        nz[k] = from.nz[i];
+        r[k] = from.r[i];
+        g[k] = from.g[i];
+        b[k] = from.b[i];
+    }
+};
+
+struct BundleSurfaces : Looks {
     // Whether `points` are wanted too: the same in double, as answers tell them.
     bool exact = false;
     std::array<SurfacePoint, RayBundle::capacity> points;
 
     // Nothing is found yet.
     void clear(std::size_t count) {
-        std::fill_n(nx.begin(), std::min(count + 16, room),
-                    std::numeric_limits<float>::quiet_NaN());
+        forget_all(count);
         if (!exact) return;
         for (std::size_t k = 0; k < count; ++k) {
             points[k].normal.x = std::numeric_limits<double>::quiet_NaN();
@@ -47,15 +59,6 @@ struct BundleSurfaces {
         r[k] = static_cast<float>(point.color.x);
         g[k] = static_cast<float>(point.color.y);
         b[k] = static_cast<float>(point.color.z);
-    }
-    [[nodiscard]] Look look(std::size_t k) const { return {nx[k], ny[k], nz[k], r[k], g[k], b[k]}; }
-    void set_look(std::size_t k, const Look& look) {
-        nx[k] = look.nx;
-        ny[k] = look.ny;
-        nz[k] = look.nz;
-        r[k] = look.r;
-        g[k] = look.g;
-        b[k] = look.b;
     }
     void forget(std::size_t k) { nx[k] = std::numeric_limits<float>::quiet_NaN(); }
     [[nodiscard]] bool seen(std::size_t k) const { return !std::isnan(nx[k]); }

@@ -490,8 +490,8 @@ TEST(Render, ShadingAgainEqualsAFullRender) {
     render(picture_of(recolored), expected, {});
 
     for (const bool keep_lists : {false, true}) {
-        for (const bool keep_look : {false, true}) {
-            Canvas canvas(frame_width, frame_height, !keep_look, keep_look);
+        for (const bool keep_looks : {false, true}) {
+            Canvas canvas(frame_width, frame_height, !keep_looks, keep_looks);
             JobSettings settings;
             settings.keep_lists = keep_lists;
             settings.threads = 2;
@@ -504,7 +504,7 @@ TEST(Render, ShadingAgainEqualsAFullRender) {
             const JobReport report = render(picture_of(recolored), canvas, settings);
             EXPECT_TRUE(report.complete);
             EXPECT_EQ(report.counts.evaluations, 0u);
-            if (!keep_look) {
+            if (!keep_looks) {
                 EXPECT_TRUE(bits_of(canvas.frame) == bits_of(expected.frame));
             }
             for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
