@@ -88,7 +88,7 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
     rendering.canvas = canvas ? std::move(canvas)
                               : std::make_unique<Canvas>(arguments.width, arguments.height,
                                                          !arguments.answers.empty());
-    rendering.canvas->forget_lists();
+    rendering.canvas->forget();
     JobSettings settings;
     settings.threads = arguments.work.threads;
     settings.task = task;

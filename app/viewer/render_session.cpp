@@ -85,6 +85,7 @@ struct Board {
     std::vector<std::uint16_t> done;       // by tile: its pixels that are this picture's
     std::vector<std::size_t> changed;      // tiles since the last poll, each once
     std::vector<std::uint8_t> is_changed;  // by tile: 1: its colours, 3: its depth too
+    std::vector<std::uint8_t> is_covered;  // by tile: with another one's pixels, now or before
     std::vector<std::array<std::uint16_t, 5>> tile_pixels;
     std::array<std::uint64_t, 5> pixels{};            // by Status, of all tiles
     std::size_t tiles_missing = 0, tiles_coarse = 0;  // those that show nothing; no fine blocks
@@ -114,6 +115,7 @@ struct Board {
             depth.resize(size);
             changed.clear();
             is_changed.assign(missing.size(), 0);
+            is_covered.assign(missing.size(), 0);
             done.assign(missing.size(), 0);
             tile_pixels.assign(missing.size(), {});
             pixels = {};
@@ -150,7 +152,9 @@ struct Board {
         const Frame& frame = canvas.frame;
         const TileState& tile = canvas.tiles[notice.tile];
         const PixelRect& rect = notice.rect;
-        for (int j = rect.y0; j < rect.y1 && !notice.same; ++j) {
+        const bool same = notice.same && is_covered[notice.tile] == 0;
+        is_covered[notice.tile] = 0;
+        for (int j = rect.y0; j < rect.y1 && !same; ++j) {
             if (notice.stride == 1) {
                 copy_row(frame, frame.at(rect.x0, j), rect.width(), tile.empty);
                 continue;
@@ -159,7 +163,7 @@ struct Board {
                 copy(frame, frame.at(i - i % notice.stride, j - j % notice.stride), frame.at(i, j));
         }
         const bool stands_for_others = notice.square > TileGrid::tile_side;
-        shows(notice.tile, stands_for_others ? notice.square : notice.stride, !notice.same);
+        shows(notice.tile, stands_for_others ? notice.square : notice.stride, !same);
         if (stands_for_others) spread(notice, canvas);
         if (tracing && done[notice.tile] == 0) ++tiles_traced;
         int sum = 0;
@@ -216,6 +220,7 @@ struct Board {
             for (int j = rect.y0; j < rect.y1; ++j)
                 for (int i = rect.x0; i < rect.x1; ++i)
                     copy(canvas.frame, from, canvas.frame.at(i, j));
+            is_covered[tile] = 1;
             shows(tile, notice.square);
         });
     }

@@ -68,6 +68,9 @@ struct Canvas {
         }
     }
 
+    // As if nothing had been painted on it.
+    void forget() { tiles.assign(tiles.size(), {}); }
+
     // For another threshold alone: what the others enclose, the sum of the F_i, is what it was.
     void forget_empty_lists() {
         for (TileState& tile : tiles) {

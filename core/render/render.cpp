@@ -302,14 +302,23 @@ class FrameJob::Work {
         return done;
     }
 
-    // Whether all tiles of the block are empty, and this job's.
+    // Whether all tiles of the block are empty, and this job's, and not all painted so already.
     bool paints_at_once(std::size_t block, std::size_t pass) const {
         if (pass > 0 || !block_lists_[block].certainly_empty) return false;
-        bool all = true;
+        bool all = true, all_stand = true;
         for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
             all = all && selected(tile) && !canvas_.tiles[tile].has_list;
+            all_stand = all_stand && stands_empty(tile);
         });
-        return all;
+        return all && !all_stand;
+    }
+
+    // It is painted as an empty tile of this picture is.
+    bool stands_empty(std::size_t index) const {
+        const PixelRect rect = tiles().rect(index);
+        return canvas_.tiles[index].empty &&
+               canvas_.frame.color[canvas_.frame.at(rect.x0, rect.y0)] ==
+                   picture_.lighting.background;
     }
 
     // The block's list, where one of its tiles will need it.
@@ -346,14 +355,13 @@ class FrameJob::Work {
         }
         bool done = true, same = false;
         if (settings_.task == Task::shade) {
-            const std::size_t corner =
-                canvas_.frame.at(tiles().rect(index).x0, tiles().rect(index).y0);
-            same = tile.empty && canvas_.frame.color[corner] == picture_.lighting.background;
+            same = stands_empty(index);
             done = same || shade_again(index, tally);
         } else if (!tile.list.certainly_empty) {
             done = trace_tile(index, strides_[pass], first, tally);
         } else if (first) {
-            if (!painted) paint_empty(tiles().rect(index));
+            same = !painted && stands_empty(index);
+            if (!painted && !same) paint_empty(tiles().rect(index));
             leave_empty(index);
         }
         const bool has_new = first || !tile.list.certainly_empty;

@@ -37,7 +37,7 @@ struct TileNotice {
     // Coarse to fine, 64 or 32 while this is the only selected tile begun of the square of so many
     // pixels a side, counted from the picture's corner: until others come it stands for them all.
     int square;
-    // Nothing in the frame is another than before: a tile without a surface, shaded again.
+    // Nothing in the frame is another than before: a tile that was without a surface and is.
     bool same = false;
 };
 
