@@ -619,7 +619,8 @@ struct Enclosing {
 // In a refined window g is another sum, and what rises before m - delta is that of the walk,
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
-// The enclosures of a vector of lanes, as far as they have come.
+//
+// These are the enclosures of a vector of lanes, as far as they have come.
 struct Enclosed {
     M<D> open;    // more steps may bring more
     M<D> done;    // lo .. hi are the grid lines about the root
