@@ -61,7 +61,6 @@ struct Margins<float> {
     static constexpr float near_end = 0x1p-20f;
 };
 
-constexpr double margin = Margins<double>::margin;
 constexpr double more = Margins<double>::more, less = Margins<double>::less;
 
 // The s'' of a circle is bounded where r / rho stays below this; else the element counts as kinked.

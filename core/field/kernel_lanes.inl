@@ -145,7 +145,7 @@ HWY_INLINE V<Tag> dot(const Vec3v<Tag>& a, const Vec3v<Tag>& b) {
 
 // What is not below this has a `root`.
 template <class Real>
-inline constexpr Real least_square = sizeof(Real) == 4 ? 1e-30F : 1e-200;
+inline constexpr Real least_square = static_cast<Real>(sizeof(Real) == 4 ? 1e-30 : 1e-200);
 
 // sqrt(x) and 1 / sqrt(x) for 1e-36 < x < 1e36, off by a relative 6 u (u = 2^-24 or 2^-53) at most:
 // in float one step of Newton from the instruction's 1.5 2^-12, which becomes 3.4 u, and roundings
