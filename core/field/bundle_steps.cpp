@@ -740,7 +740,6 @@ BendSums bend(const Field& field, const Stretch& stretch, double scale, ActiveEl
 
 // (o - c) + t d of core/math/offset.h, whose proof wants products without error.
 HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
-    const D d;
 #if HWY_NATIVE_FMA
     const V<D> origin = constant(o);
     const V<D> difference = hn::Sub(origin, c);
@@ -755,6 +754,7 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
         hn::Add(hn::Sub(constant(product), sum_back), hn::Sub(difference, hn::Sub(sum, sum_back)));
     return hn::Add(sum, hn::Add(sum_low, hn::Add(difference_low, product_low)));
 #else
+    const D d;
     HWY_ALIGN double lane[HWY_MAX_BYTES / sizeof(double)];
     hn::Store(c, d, lane);
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) lane[k] = offset(o, lane[k], t, direction);
