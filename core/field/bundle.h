@@ -14,9 +14,8 @@
 //         2 a / w^2 for a segment, where x^2 <= a s, a <= 1 (a = 1 about its ends, the squared sine
 //         of the angle between ray and segment along it); 2 / w^2 (1 - r rho'') for a circle,
 //         0 <= rho'' <= 1 / rho;
-//     bounds of the rounding errors of f and f', so that the inner loop carries none of them; of
-//     the
-//         faint ones of the fine stage float's are small enough.
+//     bounds of the rounding errors of f and f', so that the inner loop carries none of them; where
+//         an element is faint, those of float are small enough even for the fine stage.
 // Long stretches of large scenes are bounded by clusters (core/field/clusters.h); shorter ones by
 // elements, in float relative to their middle where the field suits that, else in double.
 //
