@@ -304,7 +304,9 @@ class FrameJob::Work {
 
     // Whether all tiles of the block are empty, and this job's, and not all painted so already.
     bool paints_at_once(std::size_t block, std::size_t pass) const {
-        if (pass > 0 || !block_lists_[block].certainly_empty) return false;
+        // Shading tells by what a tile shows whether it is to be painted.
+        if (pass > 0 || settings_.task == Task::shade) return false;
+        if (!block_lists_[block].certainly_empty) return false;
         bool all = true, all_stand = true;
         for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
             all = all && selected(tile) && !canvas_.tiles[tile].has_list;

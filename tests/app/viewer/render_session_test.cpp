@@ -343,6 +343,21 @@ TEST_F(Session, TilesLeftForLaterAreTracedThoughColoursComeBetween) {
     }
 }
 
+// Lists are forgotten when an element moves: a background that comes before they are made anew.
+TEST_F(Session, ABackgroundAfterAMoveReachesEmptyTiles) {
+    constexpr WindowSize large{900, 600};
+    Scene scene = two_blobs();
+    show(std::make_shared<const Scene>(scene), camera(), large);
+    ASSERT_TRUE(wait_final());
+    std::get<PointSkeleton>(scene.elements[0].skeleton).position.y += 0.07;
+    show(std::make_shared<const Scene>(scene), camera(), large);
+    ASSERT_TRUE(wait_first());
+    scene.background = {0.7, 0.2, 0.4};
+    show(std::make_shared<const Scene>(scene), camera(), large);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+}
+
 TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {
     auto scene = std::make_shared<const Scene>(two_blobs());
     show(scene);
