@@ -87,7 +87,6 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     unit_ = field.unit;
     least_width_ = field.least_width;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
-    faint_cut_ = fine_cut_ * faint_cut_multiple;
     refined_cut_ = fine_cut_ * refined_cut_share;
     list_.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
     list_.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
@@ -329,7 +328,8 @@ void BundleField::complete(const Bounded& bounded, double faint_cut, Window& w) 
 }
 
 void BundleField::complete(Window& w) {
-    if (!w.is_complete) complete(bounded_by_depth_[finished_depth_], faint_cut_, w);
+    if (!w.is_complete)
+        complete(bounded_by_depth_[finished_depth_], fine_cut_ * faint_cut_multiple, w);
 }
 
 void BundleField::take_finished(const Bounded& bounded, double faint_cut, Window& w) {

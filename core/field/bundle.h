@@ -284,7 +284,7 @@ class BundleField {
     bool is_refined_ = false, is_finer_ = false;  // those are of the window
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
-    double fine_cut_ = 0, faint_cut_ = 0, refined_cut_ = 0;
+    double fine_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
     bool skips_windows_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;

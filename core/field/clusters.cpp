@@ -119,14 +119,13 @@ Clusters clusters_of(const Field& field, int threads) {
         clusters.members.make_room(field.size());
         clusters.members.first = field.first;
     }
-    for_ranges(count, threads, 512, [&](std::size_t from, std::size_t to) {
+    for_ranges(count, threads, least_range / cluster_size, [&](std::size_t from, std::size_t to) {
         for (std::size_t cluster = from; cluster < to; ++cluster) fit(field, cluster, clusters);
     });
     return clusters;
 }
 
 void sort_by_place(const Scene& scene, int threads, std::vector<std::uint32_t>& elements) {
-    constexpr std::size_t least_range = 8192;
     std::mutex mutex;
     Box3 box;
     for_ranges(elements.size(), threads, least_range, [&](std::size_t first, std::size_t end) {

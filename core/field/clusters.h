@@ -23,6 +23,9 @@ inline constexpr std::size_t cluster_size = 16;
 // each of them costs less than the wider bounds of clusters do.
 inline constexpr std::size_t least_clustered = 2048;
 
+// Below so many elements another thread costs more to start than it saves.
+inline constexpr std::size_t least_range = 8192;
+
 // As a structure of arrays, sorted by group. At every point p with distance d from the ball, the
 // elements' F_i(p) add up to no more than above k(d^2 inverse_square), and to no less than
 // -below k(d^2 inverse_square).

@@ -83,9 +83,6 @@ void put(Field& field, std::size_t i, const Element& element) {
     field.inverse_square[i] = 1 / (element.width * element.width);
 }
 
-// Below so many elements another thread costs more than it saves.
-constexpr std::size_t least_range = 8192;
-
 void put_color(Field& field, std::size_t i, const Color& color) {
     field.color[i] = color;
     field.red[i] = static_cast<float>(color.x);

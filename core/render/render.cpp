@@ -669,7 +669,7 @@ class FrameJob::Work {
             frame.color[p] = traced.colors[k];
             if (!possibly_hit(frame.status[p])) continue;
             if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
-            if (looks != nullptr) looks->take(traced.place[k], traced.surfaces, k);
+            if (looks != nullptr && !looks_hold) looks->take(traced.place[k], traced.surfaces, k);
         }
     }
 
