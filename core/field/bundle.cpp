@@ -23,6 +23,10 @@ constexpr double worst_faint_share = 0x1p-6;
 // The multiple for windows that leave out next to nothing.
 constexpr double finer_cut_multiple = 0x1p-3;
 
+// In least widths: as long as the shortest windows, and what elements can be there hardly differs
+// from what they are.
+constexpr double closer_reach = 0x1p-6;
+
 constexpr double u_float = 0x1p-22;  // of sums in float, as add_rest wants it
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
@@ -231,15 +235,21 @@ bool BundleField::parts_differ(std::size_t depth, const BundlePart& part, double
 
 namespace {
 
+// Roundings that a sum of so many entries takes part in.
+double roundings(std::size_t entries) { return static_cast<double>(entries + 4); }
+
+// Of a compensated sum: each product's own and the last one's. What is carried along is rounded by
+// u^2.
+constexpr double compensated_roundings = 2;
+
 // With u the unit roundoff of the stage, u_sums that of the sums in `stage`.
-StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, std::size_t entries,
+StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double roundings,
                          std::size_t active, double threshold, double rest_above, double rest_below,
                          double unit, double tiny) {
     const double n = static_cast<double>(active + 64);
     const double sums = 1 + n * 4 * u_sums;
     const double rounding =
-        stage.error * sums +
-        static_cast<double>(entries + 4) * u * (stage.magnitude + threshold) * sums + tiny;
+        stage.error * sums + roundings * u * (stage.magnitude + threshold) * sums + tiny;
     StageBounds bounds;
     bounds.above = (rest_above + stage.rest_above) * sums + rounding;
     bounds.below = (rest_below + stage.rest_below) * sums + rounding;
@@ -278,8 +288,9 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     } else {
         sums = bundle_steps().coarse(*field_, finished_, scale_, cuts, here.active, w);
     }
-    w.coarse_bounds = stage_bounds(sums, 0x1p-24, u_sums, w.strong.size + w.weak.size, here.size(),
-                                   threshold_, here.rest_above, here.rest_below, slope_unit, 1e-30);
+    w.coarse_bounds =
+        stage_bounds(sums, 0x1p-24, u_sums, roundings(w.strong.size + w.weak.size), here.size(),
+                     threshold_, here.rest_above, here.rest_below, slope_unit, 1e-30);
     const double added = 1 + static_cast<double>(here.size() + 64) * 4 * u_sums;
     w.strong_bounds = {w.coarse_bounds.above + sums.weak_above * added,
                        w.coarse_bounds.below + sums.weak_below * added,
@@ -291,21 +302,21 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
 }
 
 // From doubles or, where they are there, floats.
-void BundleField::complete(const Bounded& bounded, double faint_cut, Window& w) {
+void BundleField::complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
+                           double faint_cut, Window& w) {
     const ActiveElements* active = &bounded.active;
     w.faint.clear();
     StageBounds faint;
     if (bounded.is_near) {
         active = &members_;
-        const NearStretch on =
-            near_stretch(finished_part_, bounded.near_middle, finished_.begin, finished_.end);
+        const NearStretch near_on = near_stretch(part, bounded.near_middle, on.begin, on.end);
         const double middle = (w.middle - bounded.near_middle) / unit_;
         const auto part_at = [&](double cut) {
             const StageSums sums =
-                bundle_steps().faint(bounded.near, on, middle, unit_, cut, w, members_);
+                bundle_steps().faint(bounded.near, near_on, middle, unit_, cut, w, members_);
             if (w.faint.size > 0) {
-                faint = stage_bounds(sums, 0x1p-24, 0x1p-24, w.faint.size, bounded.near.size(), 0,
-                                     0, 0, 1, 1e-30);
+                faint = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings(w.faint.size),
+                                     bounded.near.size(), 0, 0, 0, 1, 1e-30);
                 // No slope of theirs is computed.
                 faint.slope = sums.full_slope *
                               (1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22) / unit_;
@@ -317,9 +328,10 @@ void BundleField::complete(const Bounded& bounded, double faint_cut, Window& w) 
             part_at(-1);  // all in double
         }
     }
-    const StageSums sums = bundle_steps().fine(*field_, finished_, scale_, *active, w);
-    w.fine_bounds = stage_bounds(sums, 0x1p-53, 0x1p-53, w.fine.size, active->size(), threshold_,
-                                 bounded.rest_above, bounded.rest_below, 1, 1e-280);
+    const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
+    w.fine_bounds = stage_bounds(
+        sums, 0x1p-53, 0x1p-53, w.compensated ? compensated_roundings : roundings(w.fine.size),
+        active->size(), threshold_, bounded.rest_above, bounded.rest_below, 1, 1e-280);
     w.fine_bounds.above += faint.above;
     w.fine_bounds.below += faint.below;
     w.fine_bounds.slope += faint.slope;
@@ -329,7 +341,8 @@ void BundleField::complete(const Bounded& bounded, double faint_cut, Window& w) 
 
 void BundleField::complete(Window& w) {
     if (!w.is_complete)
-        complete(bounded_by_depth_[finished_depth_], fine_cut_ * faint_cut_multiple, w);
+        complete(bounded_by_depth_[finished_depth_], finished_part_, finished_,
+                 fine_cut_ * faint_cut_multiple, w);
 }
 
 void BundleField::take_finished(const Bounded& bounded, double faint_cut, Window& w) {
@@ -339,7 +352,7 @@ void BundleField::take_finished(const Bounded& bounded, double faint_cut, Window
     w.axis = window_.axis;
     w.rise = bounded.rise;
     w.fall = bounded.fall;
-    complete(bounded, faint_cut, w);
+    complete(bounded, finished_part_, finished_, faint_cut, w);
 }
 
 const Window& BundleField::refined() {
@@ -373,6 +386,37 @@ const Window& BundleField::finer() {
     bend(finished_part_, t0, t1, finer);
     take_finished(finer, fine_cut_ * finer_cut_multiple, finer_);
     return finer_;
+}
+
+const Window& BundleField::closer(const Vec3d& direction, double t) {
+    finer();
+    const Bounded& parent = refined_bounded_;
+    Bounded& here = closer_bounded_;
+    Window& w = closer_;
+    const BundlePart ray{.axis = direction};
+    const double reach = closer_reach * least_width_;
+    w.begin = std::max(t - reach, window_.begin);
+    w.end = std::min(t + reach, window_.end);
+    w.middle = 0.5 * (w.begin + w.end);
+    w.axis = direction;
+    w.compensated = true;
+    // The places are relative to the window's middle.
+    const double pad = pad_of(window_.begin, window_.end);
+    const double t0 = w.begin - pad, t1 = w.end + pad;
+    here.is_near = parent.is_near;
+    if (parent.is_near) {
+        here.near_middle = parent.near_middle;
+        const PeakSums peaks = bundle_steps().bound_near(
+            parent.near, near_stretch(ray, parent.near_middle, t0, t1), refined_cut_, here.near);
+        add_rest(parent, peaks, parent.near.size(), u_float, here);
+    } else {
+        bound(stretch(ray, t0, t1), refined_cut_, parent, false, here);
+    }
+    bend(ray, t0, t1, here);
+    w.rise = here.rise;
+    w.fall = here.fall;
+    complete(here, ray, stretch(ray, w.begin, w.end), fine_cut_ * finer_cut_multiple, w);
+    return w;
 }
 
 }  // namespace ivory

@@ -126,6 +126,8 @@ struct Window {
     StageEntries<float> faint;  // those of them that float is good enough for, as in `weak`
     StageBounds fine_bounds;    // of both, the slope computed of the first; per scene unit
     bool fine_usable = false;
+    // `fine` has to be added up without losing what the sums are rounded by (Knuth's two-sum).
+    bool compensated = false;
 };
 
 // The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
@@ -166,6 +168,10 @@ class BundleField {
     // bounds of f'' for it. No coarse stage; `refined` has no faint entries either.
     const Window& refined();
     const Window& finer();
+
+    // Likewise a piece of that window about t, for one of its rays alone: rounding is bounded there
+    // by what the field is there. Good until the next one.
+    const Window& closer(const Vec3d& direction, double t);
 
     // Bounded since `build`, and how many of them were ended by the sum of peaks.
     [[nodiscard]] std::uint64_t stretches() const { return stretches_; }
@@ -211,7 +217,8 @@ class BundleField {
                          double u, Bounded& result);
     void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     void bend(const Stretch& on, Bounded& bounded) const;
-    void complete(const Bounded& bounded, double faint_cut, Window& window);
+    void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
+                  double faint_cut, Window& window);
     void take_finished(const Bounded& bounded, double faint_cut, Window& window);
     [[nodiscard]] bool splits(std::size_t depth, double t0, double t1) const;
     // It has no parts but its rays.
@@ -279,8 +286,8 @@ class BundleField {
     Stretch finished_;  // of the window
     BundlePart finished_part_;
     Window window_;
-    Bounded refined_bounded_;
-    Window refined_, finer_;
+    Bounded refined_bounded_, closer_bounded_;
+    Window refined_, finer_, closer_;
     bool is_refined_ = false, is_finer_ = false;  // those are of the window
     Interval<double> span_ = Interval<double>::empty_set();
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;

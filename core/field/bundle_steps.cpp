@@ -995,19 +995,22 @@ BendSums bend_near(NearElements& near, const NearStretch& stretch) {
     return sums;
 }
 
-// Rounding errors of one entry, with u the unit roundoff of its stage, eta the error of `away` and
-// eta_slope that of its direction, both in widths. Blinn's: the computed s is off by
+// Rounding errors of one entry, with u the unit roundoff of its stage, eta < 5e-4 the error of
+// `away` and eta_slope that of its direction, both in widths. Blinn's: the computed s is off by
 //     ds <= 2 sqrt(s) eta + eta^2 + 9 u s,
 // five roundings of the square, one of 1 / w^2 and two of 1 / ln 2; 2^-x adds 2 u, so that with
 // e^ds <= 1.02 |dk| <= 1.02 e^-s (ds + 2 u). (For s in the hundreds e^ds is larger, but then
-// e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak (sqrt(least) +
-// c_j)^j with c_j < 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2)
-// e^-y are 0.43, 0.37, 0.41 for j = 1, 2, 3. With r = sqrt(least) + 1 that is at most
-//     |dF|  <= |b| peak (3 eta r + 13 u r^2),
-//     |dF'| <= 2 |b| / w peak (4 eta_slope r^2 + 40 u r^3),
-// the second from |d(k x)| <= |dk| sqrt(s) + 1.02 k (eta_slope + 5 u sqrt(s)) and four more
-// roundings. The other kernels: |k'| <= 3, |k''| <= 20.25, s <= 1 where k is not 0, and ten
-// roundings.
+// e^-(s - least) or e^-s itself leaves nothing to bound.) Now e^-s s^(j/2) <= peak r^j for j = 1,
+// 2, 3, with r the lesser of
+//     the greatest sqrt(s) on the stretch,
+//     sqrt(least) + 1, since sqrt(s) <= sqrt(least) + sqrt(s - least) and the suprema of y^(j/2)
+//         e^-y are 0.43, 0.37, 0.41.
+// Hence
+//     |dF|  <= |b| peak (eta (2.1 r + 1e-3) + u (10 r^2 + 4)),
+//     |dF'| <= 2 |b| / w peak (eta_slope (2.1 r^2 + 1.1) + u r (10 r^2 + 16)),
+// with one more rounding, of b, in the first; the second from |d(k x)| <= |dk| sqrt(s) + 1.02 k
+// (eta_slope + 5 u sqrt(s)), eta <= eta_slope, and up to six more roundings. The other kernels:
+// |k'| <= 3, |k''| <= 20.25, s <= 1 where k is not 0, and ten roundings.
 template <class Tag>
 struct EntryErrors {
     V<Tag> value, slope;
@@ -1015,13 +1018,15 @@ struct EntryErrors {
 
 template <KernelKind kind, class Tag>
 HWY_INLINE EntryErrors<Tag> errors_of(Tag d, double u, const EntryErrors<Tag>& eta, V<Tag> least,
-                                      V<Tag> peak) {
+                                      V<Tag> greatest_root, V<Tag> peak) {
     const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
     if constexpr (kind == KernelKind::blinn) {
-        const V<Tag> r = hn::Add(hn::Sqrt(least), c(1));
-        const V<Tag> scaled = hn::Mul(peak, r);
-        return {hn::Mul(scaled, hn::MulAdd(c(13 * u), r, hn::Mul(c(3), eta.value))),
-                hn::Mul(hn::Mul(scaled, r), hn::MulAdd(c(40 * u), r, hn::Mul(c(4), eta.slope)))};
+        const V<Tag> r = hn::Min(hn::Add(hn::Sqrt(least), c(1)), greatest_root);
+        const V<Tag> square = hn::Mul(r, r);
+        const V<Tag> of_value = hn::Mul(c(u), hn::MulAdd(c(10), square, c(4)));
+        const V<Tag> of_slope = hn::Mul(hn::Mul(c(u), r), hn::MulAdd(c(10), square, c(16)));
+        return {hn::Mul(peak, hn::MulAdd(eta.value, hn::MulAdd(c(2.1), r, c(1e-3)), of_value)),
+                hn::Mul(peak, hn::MulAdd(eta.slope, hn::MulAdd(c(2.1), square, c(1.1)), of_slope))};
     }
     return {hn::MulAdd(c(8), eta.value, c(60 * u)), hn::MulAdd(c(60), eta.slope, c(300 * u))};
 }
@@ -1069,9 +1074,19 @@ HWY_INLINE EntryErrors<Tag> etas(Tag d, const Entering& on, const Seen<Tag, shap
 template <class Tag, Shape shape>
 struct Arrivals {
     Seen<Tag, shape> e;
-    Vec3v<Tag> place;  // c - M
-    V<Tag> inverse_width, least, peak, inverse;
+    Vec3v<Tag> place;                                  // c - M
+    V<Tag> inverse_width, least, most, peak, inverse;  // most: not of points
 };
+
+// The greatest sqrt(s) on the stretch: no place of it is farther from M than H.
+template <Shape shape, class Tag>
+HWY_INLINE V<Tag> greatest_root(Tag d, const Entering& on, const Arrivals<Tag, shape>& arrivals,
+                                V<Tag> c_length) {
+    if constexpr (shape != Shape::point) return hn::Sqrt(arrivals.most);
+    const V<Tag> farthest = hn::Add(c_length, constant(d, on.H + on.place_error));
+    return hn::Mul(hn::Mul(farthest, arrivals.inverse_width),
+                   hn::Set(d, Margins<hn::TFromD<Tag>>::more));
+}
 
 // From the field, in double.
 template <Shape shape>
@@ -1094,6 +1109,7 @@ struct FieldArrivals {
                  place(stretch.origin.z, field.az, stretch.axis.z)},
                 hn::GatherIndex(d, field.inverse_width.data(), index),
                 hn::LoadU(d, &active.least[i]),
+                hn::LoadU(d, &active.most[i]),
                 hn::LoadU(d, &active.peak[i]),
                 hn::LoadU(d, &active.inverse[i])};
     }
@@ -1119,6 +1135,7 @@ struct NearArrivals {
                 {place(near.x, middle.x), place(near.y, middle.y), place(near.z, middle.z)},
                 hn::Sqrt(e.inverse_square),
                 hn::LoadU(d, &near.least[i]),
+                hn::LoadU(d, &near.most[i]),
                 hn::LoadU(d, &near.peak[i]),
                 hn::LoadU(d, &near.inverse[i])};
     }
@@ -1185,7 +1202,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const V<Tag> c_length = hn::Mul(length_of(d, arrivals.place), widened);
         const EntryErrors<Tag> eta =
             etas<shape>(d, on, e, c_length, arrivals.inverse, arrivals.inverse_width);
-        const EntryErrors<Tag> off = errors_of<kind>(d, on.u, eta, arrivals.least, arrivals.peak);
+        const EntryErrors<Tag> off =
+            errors_of<kind>(d, on.u, eta, arrivals.least,
+                            greatest_root<shape>(d, on, arrivals, c_length), arrivals.peak);
 
         M<Tag> is_strong = valid, enters = valid;
         if constexpr (is_coarse) {

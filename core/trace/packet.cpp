@@ -128,21 +128,40 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 return any(all, Lanes::walking);
             }
             bundle_field_.complete(window);
-            const auto enclose = [&](const Window& in, double left_out, Lanes::State pinned,
-                                     Lanes::State otherwise) {
+            const auto enclose_lanes = [&](const Window& in, double left_out, std::size_t first,
+                                           std::size_t end, Lanes::State pinned,
+                                           Lanes::State otherwise) {
                 const std::uint64_t evaluations =
-                    steps.enclose(in, T, unit, settings.greatest_cell, left_out, part.first,
-                                  part.end, pinned, otherwise, lanes_);
+                    steps.enclose(in, T, unit, settings.greatest_cell, left_out, first, end, pinned,
+                                  otherwise, lanes_);
                 counts.evaluations += evaluations;
                 counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
+            };
+            const auto enclose = [&](const Window& in, double left_out, Lanes::State pinned,
+                                     Lanes::State otherwise) {
+                enclose_lanes(in, left_out, part.first, part.end, pinned, otherwise);
             };
             enclose(window, 0, Lanes::hidden, Lanes::hidden);
             // What the fine list leaves open, with one that leaves out next to nothing.
             if (any(part, Lanes::hidden)) {
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
-                enclose(bundle_field_.finer(), window.fine_bounds.above + window.fine_bounds.below,
-                        Lanes::undecided, Lanes::doubtful);
+                const double left_out = window.fine_bounds.above + window.fine_bounds.below;
+                enclose(bundle_field_.finer(), left_out, Lanes::hidden, Lanes::doubtful);
+                for (std::size_t k = part.first; k < part.end; ++k) {
+                    if (lanes_.state[k] != Lanes::hidden) continue;
+                    // And what rounding leaves open, by the ray itself.
+                    const Interval<double> bracket{lanes_.t_lo[k], lanes_.t_hi[k]};
+                    const double t = midpoint(bracket);
+                    lanes_.state[k] = Lanes::candidate;
+                    lanes_.t[k] = t;
+                    const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
+                    enclose_lanes(bundle_field_.closer(direction, t), left_out, k, k + 1,
+                                  Lanes::undecided, Lanes::undecided);
+                    if (lanes_.state[k] != Lanes::undecided) continue;
+                    lanes_.t_lo[k] = bracket.lo;
+                    lanes_.t_hi[k] = bracket.hi;
+                }
             }
             if (any(part, Lanes::doubtful)) {
                 counts.skipping.rays_doubtful += static_cast<std::uint64_t>(

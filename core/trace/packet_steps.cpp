@@ -530,20 +530,48 @@ HWY_INLINE void for_each_of(const Visit& visit) {
     if constexpr (n > 1) visit(std::integral_constant<std::size_t, 1>());
 }
 
-template <Shape shape, KernelKind kind, std::size_t n>
+// x + y, and to `lost` what that is off by (Knuth, The Art of Computer Programming 2, 4.2.2).
+HWY_INLINE V<D> two_sum(V<D> x, V<D> y, V<D>& lost) {
+    const V<D> sum = hn::Add(x, y);
+    const V<D> of_y = hn::Sub(sum, x);
+    lost = hn::Add(lost, hn::Add(hn::Sub(x, hn::Sub(sum, of_y)), hn::Sub(y, of_y)));
+    return sum;
+}
+
+// `lost`: where sums are compensated.
+template <Shape shape, KernelKind kind, bool compensated, std::size_t n>
 HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint32_t count,
                                const Vec3v<D> (&p)[n], const Vec3v<D> (&direction)[n],
-                               FieldValue<D> (&sum)[n]) {
+                               FieldValue<D> (&sum)[n], V<D> (&lost)[n]) {
     for (const auto* const end = entry + count; entry != end; ++entry) {
         for_each_of<n>([&](auto half) HWY_ATTR {
             V<D> square;
             const Vec3v<D> away = away_from<shape>(d, *entry, p[half], square);
             const KernelValue<D> value =
                 kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
-            sum[half].f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum[half].f);
+            const V<D> strength = hn::Set(d, entry->strength);
+            sum[half].f = compensated ? two_sum(sum[half].f, hn::Mul(strength, value.k), lost[half])
+                                      : hn::MulAdd(strength, value.k, sum[half].f);
             const V<D> slope = hn::Mul(hn::Set(d, entry->slope), value.dk);
             sum[half].slope = hn::MulAdd(slope, dot<D>(away, direction[half]), sum[half].slope);
         });
+    }
+}
+
+template <bool compensated, std::size_t n>
+HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
+                         const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n]) {
+    const D d;
+    V<D> lost[n];
+    for_each_of<n>([&](auto half) HWY_ATTR { lost[half] = hn::Zero(d); });
+    for_groups(window.fine.count,
+               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+                   add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first,
+                                                            count, p, direction, value, lost);
+               });
+    if constexpr (compensated) {
+        for_each_of<n>([&](auto half)
+                           HWY_ATTR { value[half].f = hn::Add(value[half].f, lost[half]); });
     }
 }
 
@@ -580,11 +608,11 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
     for_each_of<n>([&](auto half) HWY_ATTR {
         value[half] = {hn::Set(d, -threshold), hn::Zero(d)};
     });
-    for_groups(window.fine.count,
-               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
-                   add_fine_group<shape, kind>(d, window.fine.entry.data() + first, count, p,
-                                               direction, value);
-               });
+    if (window.compensated) {
+        add_fine<true>(window, p, direction, value);
+    } else {
+        add_fine<false>(window, p, direction, value);
+    }
     if (window.faint.size == 0) return;
     V<D> x[n], y[n], z[n];
     for_each_of<n>([&](auto half) HWY_ATTR {

@@ -183,17 +183,20 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     const BundleTally tally = tally_of(isolations, rays.size());
     const bool all_found = surfaces == nullptr || found == tally[Status::hit];
     if (tally[Status::unresolved] == 0 && all_found) return;
-    const ElementList elements =
-        list.clusters.empty() ? ElementList{} : elements_for(rays, field, list);
-    const ElementList& for_one = list.clusters.empty() ? list : elements;
+    ElementList elements;  // those of the clusters, once a ray wants them
+    const ElementList* for_one = list.clusters.empty() ? &list : nullptr;
     std::array<double, RayBundle::capacity> m;
     bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
         if (isolations.status[k] == Status::unresolved) {
             ++counts.skipping.rays_alone;
-            isolations.set(k, isolate_from({isolations.t_lo[k], isolations.t_hi[k]}, field, for_one,
-                                           rays.ray(k), options, counts));
+            if (for_one == nullptr) {
+                elements = elements_for(rays, field, list);
+                for_one = &elements;
+            }
+            isolations.set(k, isolate_from({isolations.t_lo[k], isolations.t_hi[k]}, field,
+                                           *for_one, rays.ray(k), options, counts));
         }
         if (surfaces == nullptr || isolations.status[k] == Status::miss || surfaces->found(k)) {
             continue;

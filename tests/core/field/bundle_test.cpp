@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
+#include "tests/reference/reference.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -92,6 +94,60 @@ TEST(Bundle, StagesAreAsGoodAsTheirBounds) {
     });
     EXPECT_GT(windows, 1000);
     EXPECT_GT(share, 0.1);
+}
+
+// Of a piece of a window about one ray rounding is all that is left: it is bounded, against the
+// field in 256 bits, and closer than in the window.
+TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
+    const std::uint64_t first = tools::announced_seed(70);
+    int pieces = 0;
+    double share = 0;
+    std::vector<double> gains;
+    for (std::uint64_t seed = first; seed < first + 60; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const Scene scene = tools::random_scene({.elements = 24}, seed);
+        const Field field = compile(scene);
+        const reference::ReferenceField exact(scene);
+        const Vec3d origin = 4.0 * unit(random.in_cube(1));
+        const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.005};
+        BundleField along;
+        ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-12));
+        const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
+        const auto every = [](const BundlePart&, double, double) { return true; };
+        const int no_end = std::numeric_limits<int>::max();
+        along.for_windows(parts, {}, every, no_end, [&](const Window& window, const BundlePart&) {
+            const Vec3d d = unit(bundle.axis + 0.0049 * unit(random.in_cube(1)));
+            const Window& piece = along.closer(d, random.uniform(window.begin, window.end));
+            EXPECT_GE(piece.begin, window.begin);
+            EXPECT_LE(piece.end, window.end);
+            if (!piece.fine_usable) return true;
+            for (const double share_of_piece : {0.0, 0.3, 1.0}) {
+                const double t = piece.begin + share_of_piece * (piece.end - piece.begin);
+                const Vec3d p = piece.middle * (d - piece.axis) + (t - piece.middle) * d;
+                const tools::StageValue fine = tools::stage_value(piece.fine, field, p, d);
+                const reference::Real f = exact.at({origin, d}, reference::Real(t)).f.lo;
+                const auto g = static_cast<double>(fine.f - along.threshold());
+                const double off = f.to_double() * field.scale - g;
+                // What double loses of that difference.
+                const double slack = 0x1p-51 * std::abs(g);
+                EXPECT_LE(off, piece.fine_bounds.above + slack);
+                EXPECT_LE(-off, piece.fine_bounds.below + slack);
+                share = std::max({share, (off - slack) / piece.fine_bounds.above,
+                                  (-off - slack) / piece.fine_bounds.below});
+                ++pieces;
+            }
+            const Window& finer = along.finer();
+            gains.push_back(finer.fine_bounds.above / piece.fine_bounds.above);
+            return true;
+        });
+    }
+    std::sort(gains.begin(), gains.end());
+    EXPECT_GT(pieces, 1000);
+    EXPECT_GT(share, 0.02);
+    EXPECT_GT(gains[gains.size() / 2], 1.2);
+    std::printf("%d places, up to %.3f of a bound; bounds %.1f times closer\n", pieces, share,
+                gains[gains.size() / 2]);
 }
 
 // Where no element is so far away that it is left out, what float loses of the faint ones is all

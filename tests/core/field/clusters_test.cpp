@@ -348,6 +348,10 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
                     const Window &finer = along.finer(), &refined = along.refined();
                     tools::expect_stages_hold(field, finer, origin, d, t);
                     tools::expect_stages_hold(field, refined, origin, d, t);
+                    const Window& closer = along.closer(d, t);
+                    EXPECT_TRUE(closer.begin <= t && t <= closer.end);
+                    tools::expect_stages_hold(field, closer, origin, d, t);
+                    EXPECT_LE(closer.fine_bounds.above, finer.fine_bounds.above);
                     EXPECT_LT(finer.fine_bounds.above, 2 * refined.fine_bounds.above + 1e-14);
                     finer_faint += finer.faint.size > 0;
                     EXPECT_EQ(refined.faint.size, 0u);

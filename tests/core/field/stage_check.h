@@ -1,4 +1,5 @@
-// What the entries of a window add up to, in plain double, and whether its bounds cover the rest.
+// What the entries of a window add up to, each in plain double, and whether its bounds cover the
+// rest.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@
 namespace ivory::tools {
 
 struct StageValue {
-    double f = 0, slope = 0;  // without T
+    long double f = 0;  // without T
+    double slope = 0;
 };
 
 // At p, relative to the window's middle, along d; in the lengths of the entries.
@@ -45,7 +47,7 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
             k = s <= 1.0 / 9 ? 1 - 3 * s : 1.5 * (1 - q) * (1 - q);
             dk = s <= 1.0 / 9 ? -3 : -1.5 * (1 - q) / q;
         }
-        sum.f += e.strength * k;
+        sum.f += static_cast<long double>(e.strength) * k;
         sum.slope += e.slope * dk * dot(away, d);
     }
     return sum;
@@ -70,9 +72,10 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
     const StageValue strong = stage_value(window.strong, field, p_near, d);
     const StageValue weak = stage_value(window.weak, field, p_near, d);
     double share = 0;
-    const auto expect = [&](const char* name, double f, double slope, double unit,
+    const auto expect = [&](const char* name, long double sum, double slope, double unit,
                             const StageBounds& bounds) {
         SCOPED_TRACE(name);
+        const auto f = static_cast<double>(sum);
         // What plain double costs.
         const double slack = 0x1p-51 * static_cast<double>(field.size() + 8) * (1 + most);
         EXPECT_LE(exact - f, bounds.above + slack);

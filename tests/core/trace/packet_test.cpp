@@ -103,17 +103,20 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                     hits += found[k].status == Status::hit;
                     const Isolation alone = proved.isolate(field, list, rays->ray(k),
                                                            {.tolerance = c.tolerance}, counts);
-                    ASSERT_EQ(found[k].status, alone.status);
-                    if (alone.status == Status::hit) {
+                    ASSERT_TRUE(found[k].status == alone.status ||
+                                alone.status == Status::unresolved);
+                    bool differs = false;
+                    if (possibly_hit(alone.status)) {
                         ASSERT_GE(found[k].t.lo, alone.t.lo);
                         ASSERT_LE(found[k].t.hi, alone.t.hi);
-                        wider += found[k].t.lo != alone.t.lo || found[k].t.hi != alone.t.hi;
+                        differs = found[k].t.lo != alone.t.lo || found[k].t.hi != alone.t.hi;
+                        wider += differs;
                     }
-                    if (random.below(200) != 0) continue;
+                    if (random.below(200) != 0 && !differs) continue;
                     Answer answer{found[k], {}};
-                    if (alone.status == Status::hit) {
+                    if (found[k].status == Status::hit) {
                         answer.surface =
-                            proved.surface(field, list, rays->ray(k), midpoint(alone.t), {});
+                            proved.surface(field, list, rays->ray(k), midpoint(found[k].t), {});
                     }
                     const reference::Verdict verdict =
                         check(exact, rays->ray(k), c.tolerance, answer);
@@ -126,8 +129,8 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     EXPECT_EQ(hits > 0, c.hits);
     EXPECT_GT(judged, 0);
     // Packets see a far ray relative to its window: near the end of double, and where the field
-    // hardly rises through T, they tell more signs.
-    EXPECT_LE(wider, c.tolerance < 1e-11 || c.recipe.critical ? hits / 20 : hits / 500);
+    // hardly rises through T, they tell more signs; where it hides one, they compensate their sums.
+    EXPECT_LE(wider, c.tolerance < 1e-11 || c.recipe.critical ? hits / 8 : hits / 500);
     EXPECT_GE(decided, c.least_decided * rays_traced);
     std::printf("%d rays, %d decided by packets, %d hits, %d judged by the reference; %s\n",
                 rays_traced, decided, hits, judged, std::string(instruction_set()).c_str());
