@@ -19,45 +19,53 @@ struct StageValue {
     double slope = 0;
 };
 
-// At p, relative to the window's middle, along d; in the lengths of the entries.
+// At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
+// but for the sums.
 template <class Real>
-StageValue stage_value(const StageEntries<Real>& stage, const Field& field, const Vec3d& p,
-                       const Vec3d& d) {
+StageValue stage_value(const StageEntries<Real>& stage, const Field& field, const Vec3<Real>& p,
+                       const Vec3<Real>& d) {
     StageValue sum;
     for (std::size_t n = 0; n < stage.size; ++n) {
         const BundleEntry<Real>& e = stage.entry[n];
         const std::size_t i = stage.element[n];
-        const Vec3d v = p - Vec3d{e.cx, e.cy, e.cz}, m{e.mx, e.my, e.mz};
-        Vec3d away = v;
+        const Vec3<Real> v = p - Vec3<Real>{e.cx, e.cy, e.cz}, m{e.mx, e.my, e.mz};
+        Vec3<Real> away = v;
         if (field.shape[i] == Shape::segment) {
-            away = v - std::clamp(dot(v, m) * e.extra, 0.0, 1.0) * m;
+            away = v - std::clamp(dot(v, m) * e.extra, Real{0}, Real{1}) * m;
         } else if (field.shape[i] == Shape::circle) {
-            const Vec3d across = v - dot(v, m) * m;
+            const Vec3<Real> across = v - dot(v, m) * m;
             away = v - (e.extra / std::sqrt(dot(across, across))) * across;
         }
-        const double s = dot(away, away) * e.inverse_square;
-        double k = 0, dk = 0;
+        const Real s = dot(away, away) * e.inverse_square;
+        Real k = 0, dk = 0;
         if (field.kernel[i] == KernelKind::blinn) {
             k = dk = std::exp2(-s);
         } else if (field.kernel[i] == KernelKind::wyvill && s < 1) {
             k = (1 - s) * (1 - s) * (9 - 4 * s) / 9;
             dk = -2 * (1 - s) * (11 - 6 * s) / 9;
         } else if (s < 1) {
-            const double q = std::sqrt(s);
-            k = s <= 1.0 / 9 ? 1 - 3 * s : 1.5 * (1 - q) * (1 - q);
-            dk = s <= 1.0 / 9 ? -3 : -1.5 * (1 - q) / q;
+            const Real q = std::sqrt(s);
+            k = s <= Real{1} / 9 ? 1 - 3 * s : Real{1.5} * (1 - q) * (1 - q);
+            dk = s <= Real{1} / 9 ? -3 : Real{-1.5} * (1 - q) / q;
         }
         sum.f += static_cast<long double>(e.strength) * k;
-        sum.slope += e.slope * dk * dot(away, d);
+        sum.slope += double{e.slope * dk * dot(away, d)};
     }
     return sum;
+}
+
+inline Vec3<float> narrowed(const Vec3d& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 // That the strong entries, those with the weak ones, and the fine with the faint ones say of the
 // field what their bounds promise, where the ray from `origin` along d is at t. Returns the
 // greatest share of a bound that was needed.
 inline double expect_stages_hold(const Field& field, const Window& window, const Vec3d& origin,
-                                 const Vec3d& d, double t) {
+                                 const Vec3d& d, double near_t) {
+    // A place that float can name.
+    const auto tau = static_cast<float>((near_t - window.middle) / field.unit);
+    const double t = window.middle + double{tau} * field.unit;
     const Vec3d p = window.middle * (d - window.axis) + (t - window.middle) * d;
     double exact = 0, most = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -66,11 +74,13 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
         most += std::abs(value);
     }
     const StageValue fine = stage_value(window.fine, field, p, d);
-    const Vec3d p_near = (1 / field.unit) * p;
-    const StageValue faint = stage_value(window.faint, field, p_near, d);
+    const StageValue faint =
+        stage_value(window.faint, field, narrowed((1 / field.unit) * p), narrowed(d));
     const double kept_slope = fine.slope + faint.slope / field.unit;
-    const StageValue strong = stage_value(window.strong, field, p_near, d);
-    const StageValue weak = stage_value(window.weak, field, p_near, d);
+    const auto middle = static_cast<float>(window.middle / field.unit);
+    const Vec3<float> p_near = tau * narrowed(d) + middle * narrowed(d - window.axis);
+    const StageValue strong = stage_value(window.strong, field, p_near, narrowed(d));
+    const StageValue weak = stage_value(window.weak, field, p_near, narrowed(d));
     double share = 0;
     const auto expect = [&](const char* name, long double sum, double slope, double unit,
                             const StageBounds& bounds) {
