@@ -441,7 +441,9 @@ class RenderSession::Director {
         const Task task = prepare(request);
         std::vector<std::uint8_t> selected(tiles_.size()), kept(tiles_.size());
         for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
-            selected[tile] = task == Task::shade || tiles_[tile] == Tile::outdated;
+            selected[tile] = task == Task::shade
+                                 ? !canvas_->stands_empty(tile, picture_.lighting.background)
+                                 : tiles_[tile] == Tile::outdated;
             kept[tile] = tiles_[tile] == Tile::kept;
         }
         {

@@ -20,22 +20,6 @@ bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Where a pixel lies in the plane at distance 1 before the camera: u to the right, v up.
-//
-//        +-----------------+  v =  s
-//        |  (0,0)   ...    |
-//        |        o        |  (u, v) = (0, 0) is the line of sight
-//        |   ...  (W-1,H-1)|
-//        +-----------------+  v = -s
-//   u = -s W/H         u = s W/H
-double plane_u(const View& view, int width, int height, int i) {
-    return (2 * (i + 0.5) / width - 1) * view.s * width / height;
-}
-
-double plane_v(const View& view, int height, int j) {
-    return (1 - 2 * (j + 0.5) / height) * view.s;
-}
-
 Vec3d through_plane(const View& view, double u, double v) {
     return view.forward + u * view.right + v * view.top;
 }
@@ -83,6 +67,14 @@ Camera default_camera(const Box3& reach_box, double aspect) {
 Camera camera_of(const Scene& scene, const Field& field, int width, int height) {
     if (scene.camera) return *scene.camera;
     return default_camera(field.reach_box, static_cast<double>(width) / height);
+}
+
+double plane_u(const View& view, int width, int height, int i) {
+    return (2 * (i + 0.5) / width - 1) * view.s * width / height;
+}
+
+double plane_v(const View& view, int height, int j) {
+    return (1 - 2 * (j + 0.5) / height) * view.s;
 }
 
 Ray primary_ray(const View& view, int width, int height, int i, int j) {

@@ -38,6 +38,17 @@ struct View {
 //   direction = normalize(forward + (2 (i + 0.5)/W - 1) s W/H right + (1 - 2 (j + 0.5)/H) s top)
 [[nodiscard]] Ray primary_ray(const View& view, int width, int height, int i, int j);
 
+// Where that ray passes the plane at distance 1 before the camera, the factors of right and top:
+//
+//        +-----------------+  v =  s
+//        |  (0,0)   ...    |
+//        |        o        |  (u, v) = (0, 0) is the line of sight
+//        |   ...  (W-1,H-1)|
+//        +-----------------+  v = -s
+//   u = -s W/H         u = s W/H
+[[nodiscard]] double plane_u(const View& view, int width, int height, int i);
+[[nodiscard]] double plane_v(const View& view, int height, int j);
+
 // A cone that holds the primary rays, as the doubles they are, of all pixels of a rectangle that is
 // not empty. Proof: camera.cpp.
 [[nodiscard]] Cone cone_around(const View& view, int width, int height, const PixelRect& rect);

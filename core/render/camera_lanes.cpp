@@ -19,24 +19,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 
-void directions_of_target(const View& view, int width, int height, std::size_t count,
-                          const double* i, const double* j, double* dx, double* dy, double* dz) {
+void directions_of_target(const View& view, std::size_t count, const double* us, const double* vs,
+                          double* dx, double* dy, double* dz) {
     const D d;
-    const std::size_t N = hn::Lanes(d);
-    const V half = hn::Set(d, 0.5), one = hn::Set(d, 1.0), two = hn::Set(d, 2.0);
-    const V columns = hn::Set(d, static_cast<double>(width));
-    const V rows = hn::Set(d, static_cast<double>(height));
-    const V s = hn::Set(d, view.s);
-    for (std::size_t k = 0; k < count; k += N) {
-        const V u = hn::Div(
-            hn::Mul(
-                hn::Mul(hn::Sub(hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, i + k), half)), columns),
-                                one),
-                        s),
-                columns),
-            rows);
-        const V v = hn::Mul(
-            hn::Sub(one, hn::Div(hn::Mul(two, hn::Add(hn::LoadU(d, j + k), half)), rows)), s);
+    for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+        const V u = hn::LoadU(d, us + k), v = hn::LoadU(d, vs + k);
         const auto component = [&](double forward, double right, double top) HWY_ATTR {
             return hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
                            hn::Mul(v, hn::Set(d, top)));
@@ -60,9 +47,9 @@ namespace ivory {
 
 HWY_EXPORT(directions_of_target);
 
-void primary_directions(const View& view, int width, int height, std::size_t count, const double* i,
-                        const double* j, double* dx, double* dy, double* dz) {
-    HWY_DYNAMIC_DISPATCH(directions_of_target)(view, width, height, count, i, j, dx, dy, dz);
+void primary_directions(const View& view, std::size_t count, const double* u, const double* v,
+                        double* dx, double* dy, double* dz) {
+    HWY_DYNAMIC_DISPATCH(directions_of_target)(view, count, u, v, dx, dy, dz);
 }
 
 namespace {
@@ -86,14 +73,18 @@ Bundle bundle_of(const Vec3d& origin, const std::array<Vec3d, 4>& corners) {
 TileBundles tile_bundles(const View& view, int width, int height, int i, int j) {
     // The corners of 4 x 4 squares stand at 0, 3, 4, 7, .. 15.
     constexpr std::size_t edges = 8;
-    alignas(64) std::array<double, edges * edges> column, row, dx, dy, dz;
-    for (std::size_t k = 0; k < edges * edges; ++k) {
-        const auto edge = [](std::size_t n) { return static_cast<int>(4 * (n / 2) + 3 * (n % 2)); };
-        column[k] = i + edge(k % edges);
-        row[k] = j + edge(k / edges);
+    std::array<double, edges> of_column, of_row;
+    for (std::size_t n = 0; n < edges; ++n) {
+        const int edge = static_cast<int>(4 * (n / 2) + 3 * (n % 2));
+        of_column[n] = plane_u(view, width, height, i + edge);
+        of_row[n] = plane_v(view, height, j + edge);
     }
-    primary_directions(view, width, height, column.size(), column.data(), row.data(), dx.data(),
-                       dy.data(), dz.data());
+    alignas(64) std::array<double, edges * edges> u, v, dx, dy, dz;
+    for (std::size_t k = 0; k < edges * edges; ++k) {
+        u[k] = of_column[k % edges];
+        v[k] = of_row[k / edges];
+    }
+    primary_directions(view, u.size(), u.data(), v.data(), dx.data(), dy.data(), dz.data());
     // Of `side` edges from column x and row y on.
     const auto bundle = [&](std::size_t x, std::size_t y, std::size_t side) {
         const auto direction = [&](std::size_t at) { return Vec3d{dx[at], dy[at], dz[at]}; };

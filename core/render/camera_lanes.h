@@ -9,10 +9,10 @@
 
 namespace ivory {
 
-// primary_ray(view, width, height, i[k], j[k]).direction for k < count, to the bit. The arrays have
-// room for the next multiple of 8.
-void primary_directions(const View& view, int width, int height, std::size_t count, const double* i,
-                        const double* j, double* dx, double* dy, double* dz);
+// The directions of the primary rays through the places u[k], v[k] (plane_u, plane_v) for
+// k < count, to the bit. The arrays have room for the next multiple of 8.
+void primary_directions(const View& view, std::size_t count, const double* u, const double* v,
+                        double* dx, double* dy, double* dz);
 
 // The bundles (core/field/bundle.h) of a whole tile at the pixel (i, j): of itself, of its four
 // quarters, and of the four quarters of each of these, row by row. Cheaper than bundle_around of

@@ -68,6 +68,12 @@ struct Canvas {
         }
     }
 
+    // The tile is without a surface, and painted so before that background.
+    [[nodiscard]] bool stands_empty(std::size_t tile, Rgba8 background) const {
+        const PixelRect rect = grid.tiles.rect(tile);
+        return tiles[tile].empty && frame.color[frame.at(rect.x0, rect.y0)] == background;
+    }
+
     // As if nothing had been painted on it.
     void forget() { tiles.assign(tiles.size(), {}); }
 

@@ -38,6 +38,18 @@ struct TracedTile {
     [[nodiscard]] std::size_t size() const { return rays.size(); }
 };
 
+// Where the columns and rows of a tile pass the plane before the camera.
+struct TilePlane {
+    std::array<double, tile_side> u, v;
+
+    TilePlane(const View& view, const Frame& frame, const PixelRect& rect) {
+        for (int i = rect.x0; i < rect.x1; ++i)
+            u[static_cast<std::size_t>(i - rect.x0)] = plane_u(view, frame.width, frame.height, i);
+        for (int j = rect.y0; j < rect.y1; ++j)
+            v[static_cast<std::size_t>(j - rect.y0)] = plane_v(view, frame.height, j);
+    }
+};
+
 // What a worker works on and adds up for itself, and the report gets at its end; in cache lines of
 // its own.
 struct alignas(128) Tally {
@@ -315,12 +327,8 @@ class FrameJob::Work {
         return all && !all_stand;
     }
 
-    // It is painted as an empty tile of this picture is.
     bool stands_empty(std::size_t index) const {
-        const PixelRect rect = tiles().rect(index);
-        return canvas_.tiles[index].empty &&
-               canvas_.frame.color[canvas_.frame.at(rect.x0, rect.y0)] ==
-                   picture_.lighting.background;
+        return canvas_.stands_empty(index, picture_.lighting.background);
     }
 
     // The block's list, where one of its tiles will need it.
@@ -471,7 +479,8 @@ class FrameJob::Work {
             rays.parts[0].end_of_parts = static_cast<std::uint32_t>(rays.part_count);
         }
         std::size_t count = 0, part = 1, square_number = 5;
-        alignas(64) std::array<double, pixels_in_tile> column, row;
+        alignas(64) std::array<double, pixels_in_tile> u, v;
+        const TilePlane plane(picture_.view, frame, rect);
         for_quarters(rect, 8, [&](const PixelRect& quarter) {
             BundlePart& of_quarter = rays.parts[part++];
             of_quarter.first = static_cast<std::uint32_t>(count);
@@ -481,8 +490,8 @@ class FrameJob::Work {
                 for (int j = first_on(stride, square.y0); j < square.y1; j += stride) {
                     for (int i = first_on(stride, square.x0); i < square.x1; i += stride) {
                         if (coarser > 0 && on_stride(i, j, coarser)) continue;
-                        column[count] = i;
-                        row[count] = j;
+                        u[count] = plane.u[static_cast<std::size_t>(i - rect.x0)];
+                        v[count] = plane.v[static_cast<std::size_t>(j - rect.y0)];
                         traced.place[count] =
                             static_cast<std::uint16_t>((j - rect.y0) * rect.width() + i - rect.x0);
                         traced.pixel[count++] = static_cast<std::uint32_t>(frame.at(i, j));
@@ -498,12 +507,14 @@ class FrameJob::Work {
             of_quarter.end_of_parts = static_cast<std::uint32_t>(rays.part_count);
         });
         rays.count = count;
-        primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
-                           row.data(), rays.dx.data(), rays.dy.data(), rays.dz.data());
+        primary_directions(picture_.view, count, u.data(), v.data(), rays.dx.data(), rays.dy.data(),
+                           rays.dz.data());
     }
 
     bool shaded() const { return settings_.task != Task::trace; }
-    bool wants_surface() const { return shaded() || !canvas_.frame.surface.empty(); }
+    bool wants_surface() const {
+        return shaded() || !canvas_.frame.surface.empty() || !canvas_.looks.empty();
+    }
 
     // The surface at those m that are finite; the others keep theirs.
     void find_surface(TracedTile& traced, const ElementList& list,
@@ -531,17 +542,9 @@ class FrameJob::Work {
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
         if (first && looks != nullptr) looks->forget_all(pixels_in_tile);
         const BundleIsolations& isolations = traced.isolations;
-        for (std::size_t k = 0; k < traced.size();) {
-            // Neighbours in the frame go there together.
-            const std::size_t p = traced.pixel[k];
-            if (k + 4 <= traced.size() && traced.pixel[k + 3] == p + 3) {
-                commit_run<4>(traced, k, p, colored, looks);
-                k += 4;
-            } else {
-                commit_run<1>(traced, k, p, colored, looks);
-                k += 1;
-            }
-        }
+        for_runs(traced, [&]<std::size_t count>(std::size_t k, std::size_t p) {
+            commit_run<count>(traced, k, p, colored, looks);
+        });
         const BundleTally tally = tally_of(isolations, traced.size());
         for (std::size_t status = 0; status < tile.pixels.size(); ++status) {
             tile.pixels[status] += static_cast<std::uint16_t>(tally.rays[status]);
@@ -552,7 +555,23 @@ class FrameJob::Work {
         tile.stride = std::min(stride, tile_side);
     }
 
-    // `count` rays from k on, whose pixels stand in the frame from p on.
+    // Calls visit.operator()<count>(k, p) for runs of rays, from k on, whose pixels stand side by
+    // side in a row of the frame, from p on.
+    template <class Visit>
+    static void for_runs(const TracedTile& traced, const Visit& visit) {
+        for (std::size_t k = 0; k < traced.size();) {
+            const std::size_t p = traced.pixel[k];
+            if (k + 4 <= traced.size() && traced.pixel[k + 3] == p + 3) {
+                visit.template operator()<4>(k, p);
+                k += 4;
+            } else {
+                visit.template operator()<1>(k, p);
+                k += 1;
+            }
+        }
+    }
+
+    // One of those runs.
     template <std::size_t count>
     void commit_run(const TracedTile& traced, std::size_t k, std::size_t p, bool colored,
                     Looks* looks) const {
@@ -568,12 +587,7 @@ class FrameJob::Work {
         if (std::none_of(&isolations.status[k], &isolations.status[k] + count, hit)) return;
         copy(isolations.t_lo, k, frame.t_lo, p);
         copy(isolations.t_hi, k, frame.t_hi, p);
-        if (looks != nullptr) {
-            for (std::size_t i = k; i < k + count; ++i) {
-                if (!possibly_hit(isolations.status[i])) continue;
-                looks->take(traced.place[i], traced.surfaces, i);
-            }
-        }
+        if (looks != nullptr) looks->take<count>(traced.place[k], traced.surfaces, k);
         if (!frame.surface.empty()) copy(traced.surfaces.points, k, frame.surface, p);
     }
 
@@ -628,19 +642,25 @@ class FrameJob::Work {
     void paint_looks(std::size_t index, TracedTile& traced) {
         Frame& frame = canvas_.frame;
         const PixelRect rect = tiles().rect(index);
-        RayBundle& rays = traced.rays;
-        alignas(64) std::array<double, pixels_in_tile> column, row;
-        std::size_t count = 0;
-        for (int j = rect.y0; j < rect.y1; ++j) {
-            for (int i = rect.x0; i < rect.x1; ++i) {
-                column[count] = i;
-                row[count++] = j;
-            }
-        }
-        primary_directions(picture_.view, frame.width, frame.height, count, column.data(),
-                           row.data(), rays.dx.data(), rays.dy.data(), rays.dz.data());
-        shade_lanes(picture_.lighting, rays, canvas_.looks[index], {traced.colors.data(), count});
+        const Looks& looks = canvas_.looks[index];
         const auto width = static_cast<std::size_t>(rect.width());
+        const std::size_t count = rect.area();
+        // Directions are not needed where vectors of pixels have no surface.
+        constexpr std::size_t together = 16;
+        const TilePlane plane(picture_.view, frame, rect);
+        alignas(64) std::array<double, together> u, v;
+        RayBundle& rays = traced.rays;
+        for (std::size_t first = 0; first < count; first += together) {
+            const std::size_t end = std::min(first + together, count);
+            if (!looks.any(first, end)) continue;
+            for (std::size_t k = first; k < end; ++k) {
+                u[k - first] = plane.u[k % width];
+                v[k - first] = plane.v[k / width];
+            }
+            primary_directions(picture_.view, end - first, u.data(), v.data(), &rays.dx[first],
+                               &rays.dy[first], &rays.dz[first]);
+        }
+        shade_lanes(picture_.lighting, rays, looks, {traced.colors.data(), count});
         for (int j = rect.y0; j < rect.y1; ++j) {
             const auto* const from = &traced.colors[static_cast<std::size_t>(j - rect.y0) * width];
             std::copy_n(from, width, &frame.color[frame.at(rect.x0, j)]);
@@ -656,21 +676,26 @@ class FrameJob::Work {
         traced.surfaces.exact = !frame.surface.empty();
         traced.surfaces.clear(traced.size());
         std::array<double, pixels_in_tile> m;
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            const std::size_t p = traced.pixel[k];
-            const bool hit = possibly_hit(frame.status[p]);
-            if (looks_hold) traced.surfaces.take(k, *looks, traced.place[k]);
-            m[k] = hit ? midpoint(frame.t(p)) : infinity<double>;
-        }
+        for_runs(traced, [&]<std::size_t count>(std::size_t k, std::size_t p) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const bool hit = possibly_hit(frame.status[p + i]);
+                m[k + i] = hit ? midpoint(frame.t(p + i)) : infinity<double>;
+            }
+            if (looks_hold) traced.surfaces.take<count>(k, *looks, traced.place[k]);
+        });
         if (!looks_hold) find_surface(traced, tile.list, m);
         paint(traced);
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            const std::size_t p = traced.pixel[k];
-            frame.color[p] = traced.colors[k];
-            if (!possibly_hit(frame.status[p])) continue;
-            if (!frame.surface.empty()) frame.surface[p] = traced.surfaces.points[k];
-            if (looks != nullptr && !looks_hold) looks->take(traced.place[k], traced.surfaces, k);
-        }
+        for_runs(traced, [&]<std::size_t count>(std::size_t k, std::size_t p) {
+            std::copy_n(&traced.colors[k], count, &frame.color[p]);
+            if (looks != nullptr && !looks_hold) {
+                looks->take<count>(traced.place[k], traced.surfaces, k);
+            }
+            if (frame.surface.empty()) return;
+            for (std::size_t i = 0; i < count; ++i) {
+                if (!possibly_hit(frame.status[p + i])) continue;
+                frame.surface[p + i] = traced.surfaces.points[k + i];
+            }
+        });
     }
 
     const Picture picture_;

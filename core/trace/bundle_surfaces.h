@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "core/trace/ray.h"
@@ -24,14 +25,24 @@ struct Looks {
         std::fill_n(nx.begin(), std::min(count + 16, room),
                     std::numeric_limits<float>::quiet_NaN());
     }
-    // Number k is what number i is there.
+    // So many from number k on are what those from number i on are there.
+    template <std::size_t count>
     void take(std::size_t k, const Looks& from, std::size_t i) {
-        nx[k] = from.nx[i];
-        ny[k] = from.ny[i];
-        nz[k] = from.nz[i];
-        r[k] = from.r[i];
-        g[k] = from.g[i];
-        b[k] = from.b[i];
+        const auto copy = [&](const std::array<float, room>& there, std::array<float, room>& here) {
+            std::memcpy(&here[k], &there[i], count * sizeof(float));
+        };
+        copy(from.nx, nx);
+        copy(from.ny, ny);
+        copy(from.nz, nz);
+        copy(from.r, r);
+        copy(from.g, g);
+        copy(from.b, b);
+    }
+    // Whether there is a surface at one of number first .. end - 1.
+    [[nodiscard]] bool any(std::size_t first, std::size_t end) const {
+        bool found = false;
+        for (std::size_t k = first; k < end; ++k) found |= !std::isnan(nx[k]);
+        return found;
     }
 };
 

@@ -226,17 +226,18 @@ TEST(Camera, TheScenesOwnCameraIsTaken) {
 TEST(PrimaryDirections, AreThoseOfPrimaryRaysToTheBit) {
     const View view = make_view({{3.1, -2.7, 5.3}, {0.1, 0.2, -0.3}, {0.2, 1, 0.1}, 47.3});
     constexpr int width = 131, height = 77;
-    std::array<double, 16> i{}, j{}, x{}, y{}, z{};
+    std::array<double, 16> u{}, v{}, x{}, y{}, z{};
     for (int n = 0; n < width * height; ++n) {
-        i[static_cast<std::size_t>(n % 13)] = n % width;
-        j[static_cast<std::size_t>(n % 13)] = n / width;
+        const auto to = static_cast<std::size_t>(n % 13);
+        u[to] = plane_u(view, width, height, n % width);
+        v[to] = plane_v(view, height, n / width);
         if (n % 13 != 12) continue;
-        primary_directions(view, width, height, 13, i.data(), j.data(), x.data(), y.data(),
-                           z.data());
-        for (std::size_t k = 0; k < 13; ++k) {
-            const Ray ray =
-                primary_ray(view, width, height, static_cast<int>(i[k]), static_cast<int>(j[k]));
-            ASSERT_EQ(ray.direction, (Vec3d{x[k], y[k], z[k]})) << i[k] << ", " << j[k];
+        primary_directions(view, 13, u.data(), v.data(), x.data(), y.data(), z.data());
+        for (int k = 0; k < 13; ++k) {
+            const int pixel = n - 12 + k, i = pixel % width, j = pixel / width;
+            const Ray ray = primary_ray(view, width, height, i, j);
+            const auto at = static_cast<std::size_t>(k);
+            ASSERT_EQ(ray.direction, (Vec3d{x[at], y[at], z[at]})) << i << ", " << j;
         }
     }
 }
