@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <tuple>
 
 #include "core/field/bounding_box.h"
@@ -237,6 +238,7 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
 
 std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
     std::vector<std::uint32_t> changed;
+    const bool was_one_color = field.one_color;
     for (std::size_t i = 0; i < field.size(); ++i) {
         const Color& color = scene.elements[field.source[i]].color;
         if (field.color[i] == color) continue;
@@ -244,6 +246,11 @@ std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
         put_color(field, i, color);
     }
     look_for_one_color(field);
+    if (field.one_color != was_one_color) {
+        // Mixing equal colours rounds: it is not the colour itself.
+        changed.resize(field.size());
+        std::iota(changed.begin(), changed.end(), 0U);
+    }
     return changed;
 }
 

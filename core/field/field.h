@@ -101,7 +101,8 @@ enum class Refit : std::uint8_t {
 Refit refit(Field& field, const Scene& before, const Scene& after);
 
 // The colours of a scene that differs in nothing else from the one that `field` was compiled from.
-// Which elements have another than before: indices into `field`, ascending.
+// Which elements have another than before, or all, where they share one now or did: indices into
+// `field`, ascending.
 std::vector<std::uint32_t> recolor(Field& field, const Scene& scene);
 
 }  // namespace ivory

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/field/element_filter.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/render/camera.h"
@@ -43,6 +44,7 @@ struct TileState {
     std::array<std::uint16_t, 5> pixels{};  // how many of the traced ones have each Status
     double enclosure_width_max = 0;         // the widest t of a hit, as a length in the scene
     double unresolved_width_max = 0;        // and of an unresolved pixel
+    ElementFilter looked_at;                // those that the canvas' looks were mixed of
 };
 
 // Not to be touched while a job works on it, but for what the job's notices allow.

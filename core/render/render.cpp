@@ -112,6 +112,7 @@ class FrameJob::Work {
           block_lists_(canvas.grid.blocks.size()),
           tile_begun_(canvas.grid.tiles.size()),
           passes_done_(canvas.grid.blocks.size()) {
+        recolored_.add(settings_.recolored);
         plan();
     }
 
@@ -540,7 +541,13 @@ class FrameJob::Work {
         }
         const bool colored = settings_.task != Task::trace;
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
-        if (first && looks != nullptr) looks->forget_all(pixels_in_tile);
+        if (looks != nullptr) {
+            if (first) {
+                looks->forget_all(pixels_in_tile);
+                tile.looked_at = {};
+            }
+            tile.looked_at.add(traced.surfaces.elements);
+        }
         const BundleIsolations& isolations = traced.isolations;
         for_runs(traced, [&]<std::size_t count>(std::size_t k, std::size_t p) {
             commit_run<count>(traced, k, p, colored, looks);
@@ -591,21 +598,6 @@ class FrameJob::Work {
         if (!frame.surface.empty()) copy(traced.surfaces.points, k, frame.surface, p);
     }
 
-    // Whether an element with another colour than before is in the list.
-    bool reached_by_recolored(const ElementList& list) const {
-        const bool in_clusters = !list.clusters.empty();
-        const std::vector<std::uint32_t>& indices = in_clusters ? list.clusters : list.elements;
-        auto from = indices.begin();
-        for (const std::uint32_t element : settings_.recolored) {
-            const std::uint32_t wanted =
-                in_clusters ? picture_.field->clusters.of(element) : element;
-            from = std::lower_bound(from, indices.end(), wanted);
-            if (from == indices.end()) return false;
-            if (*from == wanted) return true;
-        }
-        return false;
-    }
-
     void mark_reached(const ElementList& list, Tally& tally) const {
         for (const std::uint32_t element : list.elements) tally.reached[element] = 1;
         const std::vector<std::uint32_t>& first = picture_.field->clusters.first;
@@ -625,9 +617,8 @@ class FrameJob::Work {
             leave_empty(index);
         } else if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
-            const bool looks_hold =
-                !canvas_.looks.empty() && frame.surface.empty() &&
-                !(tile.has_list ? reached_by_recolored(tile.list) : !settings_.recolored.empty());
+            const bool looks_hold = !canvas_.looks.empty() && frame.surface.empty() &&
+                                    !tile.looked_at.meets(recolored_);
             if (looks_hold && tile.stride == 1) {
                 paint_looks(index, *tally.traced);
             } else {
@@ -670,7 +661,7 @@ class FrameJob::Work {
     // The surface and its colours at the t that stand in the frame, unless they are known.
     void look_again(std::size_t index, bool looks_hold, TracedTile& traced) {
         Frame& frame = canvas_.frame;
-        const TileState& tile = canvas_.tiles[index];
+        TileState& tile = canvas_.tiles[index];
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
         gather(traced, index, tile.stride, 0, !looks_hold);
         traced.surfaces.exact = !frame.surface.empty();
@@ -683,7 +674,10 @@ class FrameJob::Work {
             }
             if (looks_hold) traced.surfaces.take<count>(k, *looks, traced.place[k]);
         });
-        if (!looks_hold) find_surface(traced, tile.list, m);
+        if (!looks_hold) {
+            find_surface(traced, tile.list, m);
+            tile.looked_at = traced.surfaces.elements;
+        }
         paint(traced);
         for_runs(traced, [&]<std::size_t count>(std::size_t k, std::size_t p) {
             std::copy_n(&traced.colors[k], count, &frame.color[p]);
@@ -703,6 +697,7 @@ class FrameJob::Work {
     const JobSettings settings_;
     std::vector<int> strides_;  // pass by pass
     const ElementList all_, all_clusters_;
+    ElementFilter recolored_;
 
     std::vector<std::size_t> region_order_, block_order_;
     std::size_t steps_ = 0;

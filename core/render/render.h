@@ -46,8 +46,8 @@ struct JobSettings {
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
     bool keep_lists = false;  // in the canvas, for the next job
-    // Task::shade: indices into the field, ascending, of the elements whose colour is another than
-    // it was when the looks that the canvas keeps were found.
+    // Task::shade: indices into the field of the elements whose colour is another than it was when
+    // the looks that the canvas keeps were found.
     std::vector<std::uint32_t> recolored;
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/field/element_filter.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
 
@@ -50,16 +51,21 @@ struct BundleSurfaces : Looks {
     // Whether `points` are wanted too: the same in double, as answers tell them.
     bool exact = false;
     std::array<SurfacePoint, RayBundle::capacity> points;
+    // Those that colours were mixed of: no other one's colour matters.
+    ElementFilter elements;
 
     // Nothing is found yet.
     void clear(std::size_t count) {
         forget_all(count);
+        elements = {};
         if (!exact) return;
         for (std::size_t k = 0; k < count; ++k) {
             points[k].normal.x = std::numeric_limits<double>::quiet_NaN();
         }
     }
+    // Of whatever elements.
     void set(std::size_t k, const SurfacePoint& point) {
+        elements.add_all();
         set_seen(k, point);
         if (exact) points[k] = point;
     }
