@@ -231,7 +231,7 @@ class FrameJob::Work {
     void work(Tally& tally) {
         try {
             const Clock::time_point start = Clock::now();
-            tally.reached.resize(picture_.field->size());
+            if (settings_.task != Task::shade) tally.reached.resize(picture_.field->size());
             tally.traced = std::make_unique<TracedTile>();
             while (!stopped()) {
                 const std::size_t step = next_.fetch_add(1, std::memory_order_relaxed);
@@ -360,7 +360,7 @@ class FrameJob::Work {
                 tile.has_list = true;
             }
             ++tally.tiles;
-            if (!tile.list.certainly_empty) {
+            if (settings_.task != Task::shade && !tile.list.certainly_empty) {
                 mark_reached(tile.list, tally);
             }
         }
@@ -598,6 +598,27 @@ class FrameJob::Work {
         if (!frame.surface.empty()) copy(traced.surfaces.points, k, frame.surface, p);
     }
 
+    // Whether an element with another colour than before is in the list.
+    bool reached_by_recolored(const ElementList& list) const {
+        const bool in_clusters = !list.clusters.empty();
+        const std::vector<std::uint32_t>& indices = in_clusters ? list.clusters : list.elements;
+        auto from = indices.begin();
+        for (const std::uint32_t element : settings_.recolored) {
+            const std::uint32_t wanted =
+                in_clusters ? picture_.field->clusters.of(element) : element;
+            from = std::lower_bound(from, indices.end(), wanted);
+            if (from == indices.end()) return false;
+            if (*from == wanted) return true;
+        }
+        return false;
+    }
+
+    // Whether such an element may have had a share in what the tile looks like.
+    bool is_recolored(const TileState& tile) const {
+        return tile.looked_at.meets(recolored_) &&
+               (!tile.has_list || reached_by_recolored(tile.list));
+    }
+
     void mark_reached(const ElementList& list, Tally& tally) const {
         for (const std::uint32_t element : list.elements) tally.reached[element] = 1;
         const std::vector<std::uint32_t>& first = picture_.field->clusters.first;
@@ -617,8 +638,8 @@ class FrameJob::Work {
             leave_empty(index);
         } else if (tile.stride != 0) {  // else nothing is traced
             if (stopped()) return false;
-            const bool looks_hold = !canvas_.looks.empty() && frame.surface.empty() &&
-                                    !tile.looked_at.meets(recolored_);
+            const bool looks_hold =
+                !canvas_.looks.empty() && frame.surface.empty() && !is_recolored(tile);
             if (looks_hold && tile.stride == 1) {
                 paint_looks(index, *tally.traced);
             } else {

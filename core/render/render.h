@@ -46,8 +46,8 @@ struct JobSettings {
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
     bool keep_lists = false;  // in the canvas, for the next job
-    // Task::shade: indices into the field of the elements whose colour is another than it was when
-    // the looks that the canvas keeps were found.
+    // Task::shade: indices into the field, ascending, of the elements whose colour is another than
+    // it was when the looks that the canvas keeps were found.
     std::vector<std::uint32_t> recolored;
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;
@@ -64,7 +64,8 @@ struct JobReport {
     double shade_share = 0;  // of the workers' time, 0..1; the rest went into tracing
     Counts counts;
     std::size_t tiles_traced = 0;      // tiles of which this job traced or shaded a pixel
-    std::size_t elements_reached = 0;  // elements in the list of a tile that is not empty
+    // Elements in the list of a tile that is not empty; shading does not count them.
+    std::size_t elements_reached = 0;
 };
 
 // Starts at once. The canvas must outlive it and belongs to it until `finish` or the destructor has
