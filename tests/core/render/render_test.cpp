@@ -514,6 +514,58 @@ TEST(Render, ShadingAgainEqualsAFullRender) {
     }
 }
 
+// Element by element, with lists of elements and of clusters: the picture is that of a full render,
+// and tiles that the element has no share in keep their looks.
+TEST(Render, EveryRecoloredElementIsSeenWhereItHasAShare) {
+    for (const std::size_t elements : {40U, 2400U}) {
+        SCOPED_TRACE(std::to_string(elements) + " elements");
+        Scene scene = tools::mixed_scene(elements, 5);
+        Canvas canvas(frame_width, frame_height, false, true);
+        JobSettings settings;
+        settings.keep_lists = true;
+        settings.threads = 2;
+        const Picture before = picture_of(scene);
+        render(before, canvas, settings);
+        settings.task = Task::shade;
+        Field field = *before.field;
+        EXPECT_EQ(field.clusters.empty(), elements < 2048);
+        std::size_t kept = 0, tiles = 0;
+        for (std::size_t n = 0; n < 20; ++n) {
+            const std::size_t element = n * (elements / 20);
+            scene.elements[element].color = {0.02 * static_cast<double>(n), 0.9, 0.1};
+            settings.recolored = recolor(field, scene);
+            ASSERT_EQ(settings.recolored.size(), 1u);
+            for (const TileState& tile : canvas.tiles) {
+                ElementFilter one;
+                one.add(settings.recolored);
+                tiles += !tile.empty;
+                kept += !tile.empty && !tile.looked_at.meets(one);
+            }
+            const Picture picture = picture_of(scene);
+            render(picture, canvas, settings);
+            Canvas expected(frame_width, frame_height, false);
+            render(picture, expected, {});
+            for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+                ASSERT_EQ(canvas.frame.color[p], expected.frame.color[p])
+                    << "element " << element << ", pixel " << p;
+            }
+        }
+        EXPECT_GT(kept, tiles / 8);
+    }
+}
+
+// Where all share one colour it is not mixed; once they do not it is, everywhere.
+TEST(Render, AnotherColorThanTheCommonOneIsMixedEverywhere) {
+    Scene scene = mixed_scene();
+    for (Element& element : scene.elements) element.color = {0.3, 0.6, 0.7};
+    Field field = compile(scene);
+    ASSERT_TRUE(field.one_color);
+    scene.elements[1].color = {0.3, 0.6, 0.1};
+    EXPECT_EQ(recolor(field, scene).size(), field.size());
+    scene.elements[0].color = {0.3, 0.6, 0.1};
+    EXPECT_EQ(recolor(field, scene).size(), 1u);
+}
+
 TEST(Render, TracingWithoutShadingGivesTheSameAnswers) {
     Canvas canvas(frame_width, frame_height, true);
     JobSettings settings;
