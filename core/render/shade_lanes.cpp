@@ -57,11 +57,13 @@ HWY_INLINE V lobe(V x) {
 HWY_INLINE V shoulder(V x) {
     const D d;
     constexpr float knee = 0.80F;
+    const auto is_straight = hn::Le(x, hn::Set(d, knee));
+    if (hn::AllTrue(d, is_straight)) return x;
     const V one = hn::Set(d, 1.0F);
     const V beyond = hn::Div(hn::Sub(x, hn::Set(d, knee)), hn::Set(d, 1 - knee));
     const V bent = hn::Add(hn::Set(d, knee),
                            hn::Mul(hn::Set(d, 1 - knee), hn::Div(beyond, hn::Add(one, beyond))));
-    return hn::IfThenElse(hn::Le(x, hn::Set(d, knee)), x, bent);
+    return hn::IfThenElse(is_straight, x, bent);
 }
 
 // A vector of doubles, which stand at a multiple of its length in an array of 256.
@@ -80,12 +82,16 @@ HWY_INLINE V rounded(const double* values) {
 HWY_INLINE hn::Vec<I> byte_of(V linear, const SrgbTable& table) {
     const D d;
     const I di;
-    const V x = hn::Min(hn::Max(linear, hn::Zero(d)), hn::Set(d, 1.0F));
-    const auto bin = hn::ConvertTo(di, hn::Mul(x, hn::Set(d, float{SrgbTable::bins})));
-    const auto first = hn::GatherIndex(di, table.first.data(), bin);
-    const V next = hn::GatherIndex(d, table.least_float.data() + 1, first);
-    const auto one_more = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(x, next)));  // 0 or -1
-    return hn::Sub(first, one_more);
+    const auto set = [&](std::uint32_t bits)
+                         HWY_ATTR { return hn::Set(di, static_cast<std::int32_t>(bits)); };
+    const V x = hn::Min(hn::Max(linear, hn::Set(d, SrgbTable::darkest)), hn::Set(d, 1.0F));
+    const auto bits = hn::Sub(hn::BitCast(di, x), set(SrgbTable::first_bits));
+    // Entries are below 2^32: their byte is shifted down as one without a sign.
+    const auto at = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(table.entry.data()),
+                                    hn::ShiftRight<16>(bits));
+    const auto byte = hn::And(hn::ShiftRight<24>(at), set(0xff));
+    const auto comes_next = hn::Lt(hn::And(bits, set(0xffff)), hn::And(at, set(0xffffff)));
+    return hn::Add(byte, hn::IfThenZeroElse(comes_next, set(1)));
 }
 
 void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,

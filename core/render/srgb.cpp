@@ -11,27 +11,21 @@ double srgb_decode(double s) {
 }
 
 SrgbTable make_table() {
+    // The least float that rounds to the byte k, as bits: they rise with it.
+    const auto least_bits = [](std::uint32_t k) {
+        const double least = srgb_decode((static_cast<double>(k) - 0.5) / 255);
+        return std::bit_cast<std::uint32_t>(static_cast<float>(least));
+    };
     SrgbTable table;
-    for (std::size_t k = 1; k < table.least.size(); ++k) {
-        table.least[k] = srgb_decode((static_cast<double>(k) - 0.5) / 255);
-        table.least_float[k] = static_cast<float>(table.least[k]);
-    }
-    std::int32_t byte = 0;
-    for (std::size_t bin = 0; bin < table.first.size(); ++bin) {
-        const double x = static_cast<double>(bin) / SrgbTable::bins;
-        while (x >= table.least[static_cast<std::size_t>(byte) + 1]) ++byte;
-        table.first[bin] = byte;
+    std::uint32_t byte = 0;
+    for (std::size_t bin = 0; bin < table.entry.size(); ++bin) {
+        const std::uint32_t begin =
+            SrgbTable::first_bits + static_cast<std::uint32_t>(bin) * 0x10000;
+        while (byte < 255 && least_bits(byte + 1) <= begin) ++byte;
+        const std::uint32_t next = byte < 255 ? least_bits(byte + 1) - begin : 0x10000;
+        table.entry[bin] = byte << 24 | std::min(next, std::uint32_t{0x10000});
     }
     return table;
-}
-
-std::uint8_t byte_of(double linear) {
-    const SrgbTable& table = srgb_table();
-    if (!(linear > 0)) return 0;
-    if (linear >= 1) return 255;
-    const auto first =
-        static_cast<std::size_t>(table.first[static_cast<std::size_t>(linear * SrgbTable::bins)]);
-    return static_cast<std::uint8_t>(first + (linear >= table.least[first + 1] ? 1 : 0));
 }
 
 }  // namespace
@@ -42,7 +36,9 @@ const SrgbTable& srgb_table() {
 }
 
 Rgba8 to_srgb(const Color& linear) {
-    return {byte_of(linear.x), byte_of(linear.y), byte_of(linear.z), 255};
+    const SrgbTable& table = srgb_table();
+    const auto byte = [&](double value) { return table.byte(static_cast<float>(value)); };
+    return {byte(linear.x), byte(linear.y), byte(linear.z), 255};
 }
 
 }  // namespace ivory

@@ -1,7 +1,10 @@
 // From linear light to the bytes of sRGB (IEC 61966-2-1), by comparison: no power is computed.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/render/frame.h"
@@ -9,14 +12,26 @@
 
 namespace ivory {
 
+// For linear values from `darkest` to 1, as floats, by all but the last 16 of their bits: in no
+// such bin, which is 1/256 of its values wide at least and 1/128 at most, more than one byte
+// begins.
 struct SrgbTable {
-    static constexpr int bins = 4096;
-    // least[k]: the least linear value that rounds to the byte k; the last: beyond 1.
-    std::array<double, 257> least{};
-    std::array<float, 257> least_float{};
-    // first[n]: the byte of n / bins. In no bin more than one byte begins: where the curve is
-    // steepest it rises by 255 * 12.92 / bins < 1.
-    std::array<std::int32_t, bins + 1> first{};
+    static constexpr float darkest = 0x1p-13F;  // and all below is 0
+    static constexpr std::uint32_t first_bits = std::bit_cast<std::uint32_t>(darkest);
+    static constexpr std::size_t bins =
+        (std::bit_cast<std::uint32_t>(1.0F) - first_bits) / 0x10000 + 1;
+
+    // Of each bin the byte of its first value, times 2^24, and the last 16 bits of the least value
+    // that has the next byte, or 2^16.
+    std::array<std::uint32_t, bins> entry{};
+
+    [[nodiscard]] std::uint8_t byte(float linear) const {
+        const std::uint32_t bits =
+            std::bit_cast<std::uint32_t>(std::min(std::max(darkest, linear), 1.0F)) - first_bits;
+        const std::uint32_t at = entry[bits / 0x10000];
+        return static_cast<std::uint8_t>((at >> 24) +
+                                         (bits % 0x10000 >= (at & 0xffffff) ? 1U : 0U));
+    }
 };
 
 [[nodiscard]] const SrgbTable& srgb_table();

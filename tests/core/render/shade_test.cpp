@@ -24,6 +24,19 @@ TEST(Srgb, IsTheCurveToTheNearestByte) {
     }
 }
 
+// Bytes begin where the curve says, whatever bin that is in: at the floats next to each beginning.
+TEST(Srgb, EveryByteBeginsWhereItShould) {
+    for (int k = 1; k < 256; ++k) {
+        const double s = (k - 0.5) / 255;
+        const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+        const auto least = static_cast<float>(linear);
+        EXPECT_EQ(srgb_table().byte(least), k);
+        EXPECT_EQ(srgb_table().byte(std::nextafter(least, 0.0F)), k - 1);
+        EXPECT_EQ(srgb_table().byte(std::nextafter(least, 1.0F)), k);
+    }
+    EXPECT_EQ(srgb_table().byte(std::nextafter(1.0F, 0.0F)), 255);
+}
+
 TEST(Srgb, IsClampedAndOpaque) {
     EXPECT_EQ(to_srgb({-1, 0, 1e-300}), (Rgba8{0, 0, 0, 255}));
     EXPECT_EQ(to_srgb({1, 1.0001, 1e300}), (Rgba8{255, 255, 255, 255}));
