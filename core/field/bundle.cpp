@@ -238,9 +238,9 @@ namespace {
 // Roundings that a sum of so many entries takes part in.
 double roundings(std::size_t entries) { return static_cast<double>(entries + 4); }
 
-// Of a compensated sum: each product's own and the last one's. What is carried along is rounded by
-// u^2.
-constexpr double compensated_roundings = 2;
+// Of a compensated sum: each product's own, the last one's, and that of adding the faint entries;
+// what is carried along is rounded by u^2 alone.
+constexpr double compensated_roundings = 3;
 
 // With u the unit roundoff of the stage, u_sums that of the sums in `stage`.
 StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double roundings,

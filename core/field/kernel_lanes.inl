@@ -119,10 +119,11 @@ struct Vec3v {
 };
 
 // 1 / x and sqrt(x) for x > 0. In float, off by a relative 2^-11.4 at most for 1e-36 < x < 1e36:
-// x86 promises 1.5 2^-12 for both instructions, which take a fraction of the time of a division.
+// x86 promises 1.5 2^-12 for both instructions, which take a fraction of the time of a division;
+// without vectors Highway's stand-in for the second is off by 2^-9.
 template <class Tag>
 HWY_INLINE V<Tag> rough_inverse(Tag d, V<Tag> x) {
-#if HWY_ARCH_X86
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) return hn::ApproximateReciprocal(x);
 #endif
     return hn::Div(hn::Set(d, hn::TFromD<Tag>{1}), x);
@@ -130,7 +131,7 @@ HWY_INLINE V<Tag> rough_inverse(Tag d, V<Tag> x) {
 
 template <class Tag>
 HWY_INLINE V<Tag> rough_sqrt(Tag, V<Tag> x) {
-#if HWY_ARCH_X86
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
         return hn::Mul(x, hn::ApproximateReciprocalSqrt(x));
     }
@@ -159,7 +160,7 @@ template <class Tag>
 HWY_INLINE Root<Tag> root(Tag d, V<Tag> x) {
     const auto c = [&](double value)
                        HWY_ATTR { return hn::Set(d, static_cast<hn::TFromD<Tag>>(value)); };
-#if HWY_ARCH_X86
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
         const V<Tag> y = hn::ApproximateReciprocalSqrt(x);
         const V<Tag> xy = hn::Mul(x, y);

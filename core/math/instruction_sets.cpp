@@ -21,16 +21,22 @@ std::vector<std::int64_t> targets() {
     return found;
 }
 
+// Before the first limit.
+const std::vector<std::int64_t>& all_targets() {
+    static const std::vector<std::int64_t> all = targets();
+    return all;
+}
+
 }  // namespace
 
 std::vector<std::string_view> instruction_sets() {
     std::vector<std::string_view> names;
-    for (const std::int64_t target : targets()) names.push_back(name_of(target));
+    for (const std::int64_t target : all_targets()) names.push_back(name_of(target));
     return names;
 }
 
 bool limit_instruction_set(std::string_view name) {
-    for (const std::int64_t target : targets()) {
+    for (const std::int64_t target : all_targets()) {
         if (name_of(target) != name) continue;
         hwy::DisableTargets(target - 1);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());

@@ -15,7 +15,7 @@ namespace ivory {
 // Those that this machine has, best first. The best one is used.
 [[nodiscard]] std::vector<std::string_view> instruction_sets();
 
-// From now on none better than this one of them, to compare. Not while other threads compute.
+// From now on the best one is this one of them, to compare. Not while other threads compute.
 // False: it is not one of them.
 bool limit_instruction_set(std::string_view name);
 

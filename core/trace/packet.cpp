@@ -149,8 +149,13 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
             if (any(part, Lanes::hidden)) {
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
-                const double left_out = window.fine_bounds.above + window.fine_bounds.below;
-                enclose(bundle_field_.finer(), left_out, Lanes::hidden, Lanes::doubtful);
+                const auto left_out = [](const Window& by) {
+                    return by.fine_bounds.above + by.fine_bounds.below;
+                };
+                const Window& finer = bundle_field_.finer();
+                enclose(finer, left_out(window), Lanes::hidden, Lanes::doubtful);
+                // What rises up to the ray's own piece is the sum of either.
+                const double left_out_by_both = std::max(left_out(window), left_out(finer));
                 for (std::size_t k = part.first; k < part.end; ++k) {
                     if (lanes_.state[k] != Lanes::hidden) continue;
                     // And what rounding leaves open, by the ray itself.
@@ -159,7 +164,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                     lanes_.state[k] = Lanes::candidate;
                     lanes_.t[k] = t;
                     const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
-                    enclose_lanes(bundle_field_.closer(direction, t), left_out, k, k + 1,
+                    enclose_lanes(bundle_field_.closer(direction, t), left_out_by_both, k, k + 1,
                                   Lanes::undecided, Lanes::undecided);
                     if (lanes_.state[k] != Lanes::undecided) continue;
                     lanes_.t_lo[k] = bracket.lo;

@@ -19,6 +19,7 @@
 #include "tests/reference/verdict.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
+#include "tests/tools/seed.h"
 
 namespace ivory {
 namespace {
@@ -170,6 +171,37 @@ Isolation alone_in_packet(const Scene& scene, const Ray& ray, double tolerance) 
                     {tolerance, 0.5 * std::min(tolerance, 0x1p-20) * field.least_width}, found,
                     nullptr, counts);
     return found[0];
+}
+
+// Rays along the axis' direction that pass a wide ring where the field only just exceeds T: what
+// the distance from the ring's axis is off by is most of the error there. Every instruction set has
+// roots of its own.
+TEST(Packet, WideRingsAreNotMissedOnAnyInstructionSet) {
+    Random random(tools::announced_seed(73));
+    for (const std::string_view name : instruction_sets()) {
+        SCOPED_TRACE(std::string(name));
+        ASSERT_TRUE(limit_instruction_set(name));
+        EXPECT_EQ(instruction_set(), name);
+        int hits = 0;
+        for (int n = 0; n < 1500; ++n) {
+            const double radius = random.uniform(20, 140), off = random.uniform(0.3, 1.5);
+            const double angle = random.uniform(0, 6.28);
+            Scene scene;
+            scene.elements = {{.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, radius}}};
+            const Vec3d origin{(radius - off) * std::cos(angle), (radius - off) * std::sin(angle),
+                               30};
+            const double distance = std::hypot(origin.x, origin.y) - radius;
+            // By more than plain double's error in that.
+            const double excess = std::exp(random.uniform(std::log(1e-6), std::log(2e-3)));
+            scene.threshold = std::exp(-distance * distance) * (1 - excess);
+            const Isolation found = alone_in_packet(scene, {origin, {0, 0, -1}}, 1e-6);
+            ASSERT_NE(found.status, Status::miss) << "radius " << radius << ", off " << off
+                                                  << ", angle " << angle << ", excess " << excess;
+            hits += found.status == Status::hit;
+        }
+        EXPECT_GT(hits, 500);
+    }
+    ASSERT_TRUE(limit_instruction_set(instruction_sets().front()));
 }
 
 // The axis passes through a skeleton far away and the surface is tiny around it: the distances at
