@@ -187,7 +187,7 @@ TEST(Packet, WideRingsAreNotMissedOnAnyInstructionSet) {
             const double radius = random.uniform(20, 140), off = random.uniform(0.3, 1.5);
             const double angle = random.uniform(0, 6.28);
             Scene scene;
-            scene.elements = {{.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, radius}}};
+            scene.elements = {{.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, radius}, .width = 1}};
             const Vec3d origin{(radius - off) * std::cos(angle), (radius - off) * std::sin(angle),
                                30};
             const double distance = std::hypot(origin.x, origin.y) - radius;
