@@ -233,6 +233,7 @@ class FrameJob::Work {
             const Clock::time_point start = Clock::now();
             if (settings_.task != Task::shade) tally.reached.resize(picture_.field->size());
             tally.traced = std::make_unique<TracedTile>();
+            tally.traced->surfaces.wants_elements = !canvas_.looks.empty();
             while (!stopped()) {
                 const std::size_t step = next_.fetch_add(1, std::memory_order_relaxed);
                 if (step >= steps_) break;

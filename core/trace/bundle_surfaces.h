@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 
 #include "core/field/element_filter.h"
 #include "core/trace/ray.h"
@@ -51,7 +53,8 @@ struct BundleSurfaces : Looks {
     // Whether `points` are wanted too: the same in double, as answers tell them.
     bool exact = false;
     std::array<SurfacePoint, RayBundle::capacity> points;
-    // Those that colours were mixed of: no other one's colour matters.
+    // Whether `elements` are: those that colours were mixed of. No other one's colour matters.
+    bool wants_elements = false;
     ElementFilter elements;
 
     // Nothing is found yet.
@@ -62,6 +65,9 @@ struct BundleSurfaces : Looks {
         for (std::size_t k = 0; k < count; ++k) {
             points[k].normal.x = std::numeric_limits<double>::quiet_NaN();
         }
+    }
+    void mix(std::span<const std::uint32_t> mixed) {
+        if (wants_elements) elements.add(mixed);
     }
     // Of whatever elements.
     void set(std::size_t k, const SurfacePoint& point) {

@@ -46,8 +46,8 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
         const Looked looked = packet_steps().look(window, field, bundle_field_.unit(), limit,
                                                   lanes_, part.first, part.end, surfaces);
         if (looked.wanted == 0) return 0;
-        surfaces.elements.add(window.strong.elements());
-        surfaces.elements.add(window.weak.elements());
+        surfaces.mix(window.strong.elements());
+        surfaces.mix(window.weak.elements());
         if (looked.known == looked.wanted && !surfaces.exact) return looked.known;
     }
     const double end = std::min(window.end, limit);
@@ -67,7 +67,7 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     if (index_.empty()) return found;
     points_.resize(index_.size());
     const Window& refined = bundle_field_.refined();
-    surfaces.elements.add(refined.fine.elements());
+    surfaces.mix(refined.fine.elements());
     packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data());
     for (std::size_t i = 0; i < index_.size(); ++i) {
         const std::size_t k = index_[i];
