@@ -122,20 +122,19 @@ struct Vec3v {
 // x86 promises 1.5 2^-12 for both instructions, which take a fraction of the time of a division;
 // without vectors Highway's stand-in for the second is off by 2^-9.
 template <class Tag>
+inline constexpr bool has_rough = HWY_ARCH_X86&& HWY_TARGET != HWY_SCALAR&& HWY_TARGET !=
+                                      HWY_EMU128 &&
+                                  sizeof(hn::TFromD<Tag>) == sizeof(float);
+
+template <class Tag>
 HWY_INLINE V<Tag> rough_inverse(Tag d, V<Tag> x) {
-#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-    if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) return hn::ApproximateReciprocal(x);
-#endif
+    if constexpr (has_rough<Tag>) return hn::ApproximateReciprocal(x);
     return hn::Div(hn::Set(d, hn::TFromD<Tag>{1}), x);
 }
 
 template <class Tag>
 HWY_INLINE V<Tag> rough_sqrt(Tag, V<Tag> x) {
-#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-    if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
-        return hn::Mul(x, hn::ApproximateReciprocalSqrt(x));
-    }
-#endif
+    if constexpr (has_rough<Tag>) return hn::Mul(x, hn::ApproximateReciprocalSqrt(x));
     return hn::Sqrt(x);
 }
 
@@ -160,14 +159,12 @@ template <class Tag>
 HWY_INLINE Root<Tag> root(Tag d, V<Tag> x) {
     const auto c = [&](double value)
                        HWY_ATTR { return hn::Set(d, static_cast<hn::TFromD<Tag>>(value)); };
-#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-    if constexpr (sizeof(hn::TFromD<Tag>) == sizeof(float)) {
+    if constexpr (has_rough<Tag>) {
         const V<Tag> y = hn::ApproximateReciprocalSqrt(x);
         const V<Tag> xy = hn::Mul(x, y);
         const V<Tag> error = hn::NegMulAdd(hn::Mul(xy, c(0.5)), y, c(0.5));  // (1 - x y^2) / 2
         return {hn::MulAdd(xy, error, xy), hn::MulAdd(y, error, y)};
     }
-#endif
     const V<Tag> exact = hn::Sqrt(x);
     return {exact, hn::Div(c(1), exact)};
 }

@@ -73,7 +73,8 @@ struct PacketSteps {
     // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
     // become hits; or `pinned` where the root lies in t_lo .. t_hi but a grid line does too; or
     // `otherwise`. For a refined window `left_out` is what the elements that it has more than the
-    // window of the walk add to f or take away, at most.
+    // window of the walk add to f or take away, at most; for a piece of it about one ray, the most
+    // that either of these two leaves out.
     std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
                              double left_out, std::size_t first, std::size_t end,
                              Lanes::State pinned, Lanes::State otherwise, Lanes& lanes);

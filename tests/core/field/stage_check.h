@@ -1,4 +1,4 @@
-// What the entries of a window add up to, each in plain double, and whether its bounds cover the
+// What the entries of a window add up to in their own arithmetic, and whether its bounds cover the
 // rest.
 #pragma once
 
@@ -59,7 +59,7 @@ inline Vec3<float> narrowed(const Vec3d& v) {
 }
 
 // That the strong entries, those with the weak ones, and the fine with the faint ones say of the
-// field what their bounds promise, where the ray from `origin` along d is at t. Returns the
+// field what their bounds promise, where the ray from `origin` along d is near that t. Returns the
 // greatest share of a bound that was needed.
 inline double expect_stages_hold(const Field& field, const Window& window, const Vec3d& origin,
                                  const Vec3d& d, double near_t) {

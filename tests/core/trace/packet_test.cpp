@@ -11,11 +11,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/math/direction.h"
 #include "core/trace/methods/proved.h"
+#include "core/trace/packet_steps.h"
 #include "tests/reference/verdict.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
@@ -178,16 +180,19 @@ Isolation alone_in_packet(const Scene& scene, const Ray& ray, double tolerance) 
 // roots of its own.
 TEST(Packet, WideRingsAreNotMissedOnAnyInstructionSet) {
     Random random(tools::announced_seed(73));
+    std::set<const PacketSteps*> used;
     for (const std::string_view name : instruction_sets()) {
         SCOPED_TRACE(std::string(name));
         ASSERT_TRUE(limit_instruction_set(name));
         EXPECT_EQ(instruction_set(), name);
+        EXPECT_TRUE(used.insert(&packet_steps()).second);
         int hits = 0;
         for (int n = 0; n < 1500; ++n) {
             const double radius = random.uniform(20, 140), off = random.uniform(0.3, 1.5);
             const double angle = random.uniform(0, 6.28);
             Scene scene;
-            scene.elements = {{.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, radius}, .width = 1}};
+            scene.elements = {
+                {.skeleton = CircleSkeleton{{0, 0, 0}, {0, 0, 1}, radius}, .width = 1}};
             const Vec3d origin{(radius - off) * std::cos(angle), (radius - off) * std::sin(angle),
                                30};
             const double distance = std::hypot(origin.x, origin.y) - radius;
@@ -202,6 +207,35 @@ TEST(Packet, WideRingsAreNotMissedOnAnyInstructionSet) {
         EXPECT_GT(hits, 500);
     }
     ASSERT_TRUE(limit_instruction_set(instruction_sets().front()));
+}
+
+// A thousand equal elements are one of as many times the strength, exactly, but each addition is
+// rounded alike: only sums that carry along what they lose find the same cells.
+TEST(Packet, ManyEqualElementsAddUpToOne) {
+    constexpr int count = 1024;
+    const double tolerance = 1e-12;
+    Random random(tools::announced_seed(74));
+    int decided = 0;
+    for (int n = 0; n < 60; ++n) {
+        Scene one;
+        one.threshold = random.uniform(0.2, 0.8);
+        one.elements = {{.skeleton = PointSkeleton{random.in_cube(0.3)}}};
+        Scene many = one;
+        many.elements.assign(count, one.elements.front());
+        for (Element& element : many.elements) element.strength = 1.0 / count;
+        const reference::ReferenceField exact(one);
+        const Vec3d origin = 4.0 * unit(random.in_cube(1));
+        const Ray ray{origin, unit(random.in_cube(0.3) - origin)};
+        const Isolation found = alone_in_packet(many, ray, tolerance);
+        if (found.status == Status::unresolved) continue;
+        ++decided;
+        const SurfacePoint surface =
+            Proved().surface(compile(one), all_elements(compile(one)), ray, midpoint(found.t), {});
+        const reference::Verdict verdict = check(exact, ray, tolerance, {found, surface});
+        EXPECT_EQ(verdict.fault, reference::Fault::none)
+            << word(verdict.fault) << ", picture " << n;
+    }
+    EXPECT_GT(decided, 40);
 }
 
 // The axis passes through a skeleton far away and the surface is tiny around it: the distances at
