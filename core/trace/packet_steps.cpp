@@ -158,7 +158,8 @@ template <>
 struct Stage<float> {
     static constexpr float tight = 0x1p-18f, rough = 0x1p-10f;
     static constexpr double last_place = 0x1p-22, tiny = 1e-20, huge = 3e38;
-    static constexpr double settled = 0x1p-10;  // of half the window: Newton does the rest
+    // Of half the window: the first step of the enclosure does the rest.
+    static constexpr double settled = 0x1p-6;
     static constexpr int most_guesses = 6;
     static constexpr Lanes::State takes = Lanes::walking, leaves = Lanes::doubtful;
 
@@ -357,15 +358,18 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             undecided = hn::Or(undecided, hn::And(walking, hn::Not(hn::Lt(f_hi, zero))));
             walking = hn::AndNot(undecided, walking);
 
-            // The parabola below f: with a zero in the window, g rises up to there.
+            // The parabola below f: with a zero in the window, g rises up to there, and on up to
+            // its vertex, which lies beyond what the rough numbers add to that zero.
             const V<Tag> firm = hn::Mul(slope_lo, one_less);
             const V<Tag> below_square = hn::MulAdd(firm, firm, hn::Mul(hn::Add(fall, fall), f_lo));
+            const V<Tag> turning =
+                hn::MulAdd(hn::Mul(firm, hn::Set(d, Real{16} * S::rough * S::rough)), firm, least);
             const V<Tag> steepness = hn::Add(firm, rough_sqrt(d, below_square));
             const V<Tag> latest =
                 hn::Mul(hn::Mul(c(-2 * (1 + S::rough)), f_lo), rough_inverse(d, steepness));
             const V<Tag> latest_tau = hn::Add(tau, latest);
             const M<Tag> rises =
-                hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, least)),
+                hn::And(walking, hn::And(hn::And(hn::Gt(firm, zero), hn::Gt(below_square, turning)),
                                          hn::Le(latest_tau, end)));
 
             // The parabola above f: up to its zero there is no root.
