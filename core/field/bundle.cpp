@@ -36,6 +36,9 @@ constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 // Stretches up to this length are bounded in float, where the field suits it.
 constexpr double longest_in_float = 100;  // units
 
+// In units: common bundles are no wider where they begin.
+constexpr double widest_common = 8;
+
 // A window is made for each part of the rays where they are farther apart than this share of its
 // length.
 constexpr double parts_apart = 1;
@@ -43,21 +46,38 @@ constexpr double parts_apart = 1;
 }  // namespace
 
 bool BundleField::build(const Field& field, const ElementList& list, const Bundle& bundle,
-                        double tolerance, bool skips_windows) {
+                        double tolerance, bool skips_windows, const CommonBundle* common) {
     field_ = &field;
     skips_windows_ = skips_windows;
     stretches_ = stretches_ended_ = 0;
     origin_ = bundle.origin;
     span_ = Interval<double>::empty_set();
+    is_shared_ = false;
     if (!field.compact || !(bundle.spread <= 0.5)) return false;
     const Vec3d& o = bundle.origin;
-    const Vec3d& d = bundle.axis;
     if (!(std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30)) return false;
     if (list.certainly_empty || field.box.empty()) return true;
+    span_ = span_of(bundle);
+    if (is_empty(span_)) return true;
 
+    scale_ = field.scale;
+    threshold_ = field.threshold * scale_;
+    unit_ = field.unit;
+    least_width_ = field.least_width;
+    fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
+    refined_cut_ = fine_cut_ * refined_cut_share;
+    take_list(list, list_);
+    if (common != nullptr) share(*common);
+    return true;
+}
+
+// The t at which rays of the bundle may be in the field's box.
+Interval<double> BundleField::span_of(const Bundle& bundle) const {
     // Every ray is in the box at t only if the axis is in the box made larger by t spread.
+    const Vec3d& o = bundle.origin;
+    const Vec3d& d = bundle.axis;
     double farthest = 0;
-    Box3 box = field.box;
+    Box3 box = field_->box;
     for (std::size_t k = 0; k < 3; ++k) {
         const double side = std::max(std::abs(box.lo[k] - o[k]), std::abs(box.hi[k] - o[k]));
         farthest += side * side;
@@ -69,38 +89,76 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
         box.lo[k] -= aside + std::abs(box.lo[k]) * margin;
         box.hi[k] += aside + std::abs(box.hi[k]) * margin;
     }
-    span_ = {0.0, infinity<double>};
+    Interval<double> span{0.0, infinity<double>};
     for (std::size_t k = 0; k < 3; ++k) {
         if (std::abs(d[k]) > 1e-9) {  // smaller ones bound nothing that matters
             const Interval<double> slab(box.lo[k], box.hi[k]);
-            span_ = intersection(span_, (slab - Interval<double>(o[k])) / Interval<double>(d[k]));
+            span = intersection(span, (slab - Interval<double>(o[k])) / Interval<double>(d[k]));
         } else if (d[k] == 0 && (o[k] < box.lo[k] || o[k] > box.hi[k])) {
-            span_ = Interval<double>::empty_set();
+            span = Interval<double>::empty_set();
         }
     }
-    if (is_empty(span_)) return true;
-    span_.hi = std::min(span_.hi * more, farthest * more);
-    span_.lo = std::max(span_.lo * less, 0.0);
-    if (!(span_.lo < span_.hi)) {
-        span_ = Interval<double>::empty_set();
-        return true;
-    }
+    if (is_empty(span)) return span;
+    span.hi = std::min(span.hi * more, farthest * more);
+    span.lo = std::max(span.lo * less, 0.0);
+    return span.lo < span.hi ? span : Interval<double>::empty_set();
+}
 
-    scale_ = field.scale;
-    threshold_ = field.threshold * scale_;
-    unit_ = field.unit;
-    least_width_ = field.least_width;
-    fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
-    refined_cut_ = fine_cut_ * refined_cut_share;
-    list_.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
-    list_.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
-    list_.in_clusters = !list.clusters.empty();
-    if (list_.in_clusters) {
-        list_.active.take(field.clusters.first_of_group, list.clusters);
+void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
+    bounded.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
+    bounded.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
+    bounded.in_clusters = !list.clusters.empty();
+    if (bounded.in_clusters) {
+        bounded.active.take(field_->clusters.first_of_group, list.clusters);
     } else {
-        list_.active.take(field.first, list.elements);
+        bounded.active.take(field_->first, list.elements);
     }
-    return true;
+}
+
+void BundleField::share(const CommonBundle& common) {
+    if (!(common.bundle.spread <= 0.5)) return;
+    if (shared_number_ != common.number) {
+        shared_number_ = common.number;
+        shared_count_ = 0;
+        const Interval<double> span = span_of(common.bundle);
+        // What is much wider has many elements that are of no use to its parts.
+        if (is_empty(span) || !(span.lo * common.bundle.spread <= widest_common * unit_)) return;
+        take_list(*common.list, shared_list_);
+        add_shared(span.lo, span.hi, 0);
+    }
+    is_shared_ = shared_count_ > 0;
+    home_ = {.axis = common.bundle.axis, .spread = common.bundle.spread};
+}
+
+void BundleField::add_shared(double begin, double end, std::size_t parent) {
+    if (shared_.size() == shared_count_) shared_.emplace_back();
+    SharedStretch& stretch = shared_[shared_count_++];
+    stretch.begin = begin;
+    stretch.end = end;
+    stretch.parent = parent;
+    stretch.first_half = 0;
+    stretch.is_bounded = stretch.is_ended = false;
+}
+
+bool BundleField::bound_shared(std::size_t index, bool halves) {
+    SharedStretch& here = shared_[index];
+    if (!here.is_bounded) {
+        const Bounded& parent = index == 0 ? shared_list_ : shared_[here.parent].bounded;
+        const double pad = pad_of(here.begin, here.end);
+        here.is_ended =
+            !bound(parent, here.bounded, home_, here.begin - pad, here.end + pad, halves);
+        here.is_bounded = true;
+    }
+    return !here.is_ended;
+}
+
+void BundleField::halve_shared(std::size_t index) {
+    if (shared_[index].first_half != 0) return;
+    const double begin = shared_[index].begin, end = shared_[index].end;
+    const double middle = 0.5 * (begin + end);
+    shared_[index].first_half = shared_count_;
+    add_shared(begin, middle, index);
+    add_shared(middle, end, index);
 }
 
 Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const {
@@ -111,7 +169,7 @@ Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const
 // away from M.
 NearStretch BundleField::near_stretch(const BundlePart& part, double middle, double t0,
                                       double t1) const {
-    const Vec3d& axis = parts_[0].axis;
+    const Vec3d& axis = home_.axis;
     const double per_unit = 1 / unit_;
     return {part.axis,
             {middle * (part.axis.x - axis.x) * per_unit, middle * (part.axis.y - axis.y) * per_unit,
@@ -149,7 +207,7 @@ void BundleField::add_rest(const Bounded& parent, const PeakSums& peaks, std::si
 PeakSums BundleField::bound_members(const BundlePart& part, double t0, double t1, double cut,
                                     const Bounded& parent, Bounded& result) {
     const PeakSums peaks = bundle_steps().bound_members(
-        *field_, stretch(parts_[0], t0, t1), result.near_middle,
+        *field_, stretch(home_, t0, t1), result.near_middle,
         near_stretch(part, result.near_middle, t0, t1), cut, parent.active, &result.near);
     add_rest(parent, peaks, parent.active.size() * cluster_size, u_float, result);
     return peaks;
@@ -158,8 +216,12 @@ PeakSums BundleField::bound_members(const BundlePart& part, double t0, double t1
 bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1,
                         bool in_clusters) {
     if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
-    Bounded& here = bounded_by_depth_[depth];
-    const Bounded& parent = depth == 0 ? list_ : bounded_by_depth_[depth - 1];
+    const Bounded& parent = depth == 0 ? *root_ : bounded_by_depth_[depth - 1];
+    return bound(parent, bounded_by_depth_[depth], part, t0, t1, in_clusters);
+}
+
+bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0,
+                        double t1, bool in_clusters) {
     PeakSums peaks;
     double u = 0x1p-52;  // of the sums
     here.is_near = parent.is_near;
@@ -173,7 +235,7 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         const double middle = 0.5 * (t0 + t1);
         if (!in_clusters && std::abs(middle - here.near_middle) > long_stretch * unit_) {
             here.near_middle = middle;
-            bundle_steps().place_near(*field_, stretch(parts_[0], t0, t1), middle, here.near);
+            bundle_steps().place_near(*field_, stretch(home_, t0, t1), middle, here.near);
         }
     } else {
         const Stretch on = stretch(part, t0, t1);
@@ -187,7 +249,7 @@ bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, do
         } else {
             peaks = bound(on, fine_cut_, parent, in_clusters, here);
             if (here.is_near) {
-                bundle_steps().enter_near(*field_, stretch(parts_[0], t0, t1), here.near_middle,
+                bundle_steps().enter_near(*field_, stretch(home_, t0, t1), here.near_middle,
                                           here.active, here.near);
             }
         }

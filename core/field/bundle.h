@@ -28,6 +28,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,15 @@ struct BundlePart {
     double spread = 0;
     std::uint32_t first = 0, end = 0;                // rays
     std::uint32_t first_part = 0, end_of_parts = 0;  // after this one in the array; none: equal
+};
+
+// A wider bundle, of the same origin, that others are parts of, and a list that is valid on it. What
+// is bounded on long stretches of it is kept as long as `number` stays the same, and so shared by
+// those who come one after another.
+struct CommonBundle {
+    Bundle bundle;
+    const ElementList* list = nullptr;
+    std::uint64_t number = 0;  // not 0; another one for each field, tolerance, list and bundle
 };
 
 // Those of a bundle's rays, component by component; null: not told.
@@ -137,17 +147,18 @@ class BundleField {
     static constexpr std::size_t parts_elements = 12;
 
     // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
-    // be left out; unless it `skips_windows`, none ends by the sum of peaks. False: numbers beyond
-    // what the bounds are proved for; nothing else may be called.
+    // be left out; unless it `skips_windows`, none ends by the sum of peaks. Long stretches are
+    // bounded for the `common` bundle, unless that is null or much wider than elements are. False:
+    // numbers beyond what the bounds are proved for; nothing else may be called.
     bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
-               bool skips_windows = true);
+               bool skips_windows = true, const CommonBundle* common = nullptr);
 
     // The t outside of which every ray is outside of the field's box, and so f < 0; empty: a miss.
     [[nodiscard]] Interval<double> span() const { return span_; }
 
     // Calls visit(window, part) for windows from front to back until it returns false; f < 0
     // certainly holds on the parts of span() between them. parts[0] is the bundle. Which windows
-    // there are depends on field, list, parts and tolerance alone. Those that
+    // there are depends on field, lists, parts, common bundle and tolerance alone. Those that
     // wanted(part, begin, end) denies are passed over. If there are parts, each ray of one that has
     // none may be a part of its own, whose axis is that of the ray in `rays`. When `budget`
     // stretches of t have been bounded, one for all rays that is not `coarse_usable` and begins at
@@ -158,7 +169,14 @@ class BundleField {
         left_ = budget;
         parts_ = parts;
         rays_ = rays;
-        if (!is_empty(span_)) descend(0, parts[0], span_.lo, span_.hi, wanted, visit);
+        if (is_empty(span_)) return;
+        if (is_shared_) {
+            descend_shared(0, wanted, visit);
+        } else {
+            root_ = &list_;
+            home_ = parts[0];
+            descend(0, parts[0], span_.lo, span_.hi, wanted, visit);
+        }
     }
 
     // The fine stage of the window that is being visited, if it is not there yet.
@@ -200,13 +218,30 @@ class BundleField {
         [[nodiscard]] std::size_t size() const { return is_near ? near.size() : active.size(); }
     };
 
+    // A stretch of the common bundle; in the order in which they came to be wanted.
+    struct SharedStretch {
+        double begin = 0, end = 0;
+        std::size_t parent = 0;
+        std::size_t first_half = 0;  // the second follows; 0: not halved (yet)
+        bool is_bounded = false, is_ended = false;
+        Bounded bounded;
+    };
+
     // Float cannot name the ends of a stretch: what is bounded is so much longer.
     static double pad_of(double t0, double t1) { return 0x1p-20 * (t1 - t0); }
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     [[nodiscard]] NearStretch near_stretch(const BundlePart& part, double middle, double t0,
                                            double t1) const;
+    [[nodiscard]] Interval<double> span_of(const Bundle& bundle) const;
+    void take_list(const ElementList& list, Bounded& bounded) const;
+    void share(const CommonBundle& common);
     // False: f < 0 on all of [t0, t1] for every ray.
+    bool bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0, double t1,
+               bool in_clusters);
     bool bound(std::size_t depth, const BundlePart& part, double t0, double t1, bool in_clusters);
+    void add_shared(double begin, double end, std::size_t parent);
+    bool bound_shared(std::size_t index, bool halves);
+    void halve_shared(std::size_t index);
     // Of the parent's those with |F| above `cut`; the others join what they could add. Clusters
     // stay clusters if that is wanted.
     PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
@@ -233,23 +268,54 @@ class BundleField {
                                     double t1) const;
     void finish(std::size_t depth, const BundlePart& part, double t0, double t1);
 
+    // None other is visited; it begins at 0.
+    template <class Visit>
+    bool give_up(const Visit& visit) {
+        window_.coarse_usable = false;
+        window_.begin = 0;
+        visit(window_, parts_[0]);
+        return false;
+    }
+
+    [[nodiscard]] bool is_divisible(std::size_t depth, double t0, double t1) const {
+        const double middle = 0.5 * (t0 + t1);
+        return middle > t0 && middle < t1 && depth < greatest_depth;
+    }
+    [[nodiscard]] bool is_long(double t0, double t1) const {
+        return t1 - t0 > long_stretch * unit_;
+    }
+
+    // Long stretches of the common bundle, as far as this one needs them; and then its own.
+    template <class Wanted, class Visit>
+    bool descend_shared(std::size_t index, const Wanted& wanted, const Visit& visit,
+                        std::size_t depth = 0) {
+        const double t0 = shared_[index].begin, t1 = shared_[index].end;
+        if (t1 < span_.lo || t0 > span_.hi || !wanted(parts_[0], t0, t1)) return true;
+        if (left_-- <= 0) return give_up(visit);
+        const bool halves = is_divisible(depth, t0, t1) && is_long(t0, t1);
+        if (!bound_shared(index, halves)) return true;
+        if (halves) {
+            halve_shared(index);
+            const std::size_t first = shared_[index].first_half;
+            return descend_shared(first, wanted, visit, depth + 1) &&
+                   descend_shared(first + 1, wanted, visit, depth + 1);
+        }
+        root_ = &shared_[index].bounded;
+        return descend(0, parts_[0], t0, t1, wanted, visit);
+    }
+
     template <class Wanted, class Visit>
     bool descend(std::size_t depth, const BundlePart& part, double t0, double t1,
                  const Wanted& wanted, const Visit& visit) {
         const double pad = pad_of(t0, t1);
         if (!wanted(part, t0, t1)) return true;
-        if (left_-- <= 0) {
-            window_.coarse_usable = false;
-            window_.begin = 0;
-            visit(window_, parts_[0]);
-            return false;
-        }
+        if (left_-- <= 0) return give_up(visit);
         const double middle = 0.5 * (t0 + t1);
-        const bool divisible = middle > t0 && middle < t1 && depth < greatest_depth;
-        const bool is_long = divisible && t1 - t0 > long_stretch * unit_;
-        if (!bound(depth, part, t0 - pad, t1 + pad, is_long)) return true;
-        if (!is_long) bend(part, t0 - pad, t1 + pad, bounded_by_depth_[depth]);
-        const bool divides = is_long || (divisible && splits(depth, t0, t1));
+        const bool divisible = is_divisible(depth, t0, t1);
+        const bool halves = divisible && is_long(t0, t1);
+        if (!bound(depth, part, t0 - pad, t1 + pad, halves)) return true;
+        if (!halves) bend(part, t0 - pad, t1 + pad, bounded_by_depth_[depth]);
+        const bool divides = halves || (divisible && splits(depth, t0, t1));
         const bool has_parts = depth < greatest_depth && is_divisible(part);
         // Where the rays are farther apart than the stretch is long, to halve it says less of each
         // of them than to part them.
@@ -279,6 +345,15 @@ class BundleField {
     std::span<const BundlePart> parts_;
     Directions rays_;
     Bounded list_;
+    // What is bounded is part of this: the list, or a stretch of the common bundle. Places are
+    // relative to the axis of `home_`, which is that bundle, or the one that was built.
+    const Bounded* root_ = nullptr;
+    BundlePart home_;
+    bool is_shared_ = false;
+    std::uint64_t shared_number_ = 0;
+    Bounded shared_list_;
+    std::deque<SharedStretch> shared_;  // those beyond shared_count_ keep their memory
+    std::size_t shared_count_ = 0;
     ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded near_clusters_;
     std::vector<Bounded> bounded_by_depth_;

@@ -54,6 +54,8 @@ struct TilePlane {
 // its own.
 struct alignas(128) Tally {
     Counts counts;
+    CommonBundle common;  // that of the block that is being worked on; its number is 0 until a tile asks
+    ElementList common_list;
     Clock::duration tracing{}, shading{};
     std::size_t tiles = 0;
     std::vector<std::uint8_t> reached;  // by element
@@ -184,13 +186,15 @@ class FrameJob::Work {
         for (std::size_t block = 0; block < blocks().size(); ++block) {
             const PixelRect rect = blocks().rect(block);
             bool any = false;
-            bool without_list = false;
+            bool wants_list = false;  // to trace, one for all that the block's tiles share
             for_squares_in(tiles(), rect, [&](std::size_t tile) {
-                any = any || selected(tile);
-                without_list = without_list || (selected(tile) && !canvas_.tiles[tile].has_list);
+                if (!selected(tile)) return;
+                any = true;
+                wants_list = wants_list || settings_.task != Task::shade ||
+                             !canvas_.tiles[tile].has_list;
             });
             if (any) block_order_.push_back(block);
-            if (without_list) needed[regions().at(rect.x0, rect.y0)] = 1;
+            if (wants_list) needed[regions().at(rect.x0, rect.y0)] = 1;
         }
         if (settings_.order == Order::coarse_to_fine) begin_at_focus();
 
@@ -294,6 +298,7 @@ class FrameJob::Work {
 
     bool take_block(std::size_t block, std::size_t pass, Tally& tally) {
         const PixelRect rect = blocks().rect(block);
+        tally.common.number = 0;
         if (pass == 0 && !list_block(block, tally)) return false;
         // Of a square larger than a tile the first tile alone, unless all are done at once.
         const bool sparse = strides_[pass] > tile_side && !block_lists_[block].certainly_empty;
@@ -345,6 +350,25 @@ class FrameJob::Work {
         if (!wait_until(region_done_[region], 1)) return false;
         block_lists_[block] = narrowed(region_lists_[region], rect, tally);
         return true;
+    }
+
+    // What the tiles of a block share; null where there is nothing of the kind.
+    const CommonBundle* common_of(std::size_t tile, Tally& tally) const {
+        static std::atomic<std::uint64_t> numbers{0};
+        CommonBundle& common = tally.common;
+        if (common.number == 0) {
+            const PixelRect corner = tiles().rect(tile);
+            const PixelRect rect = blocks().rect(blocks().at(corner.x0, corner.y0));
+            const std::size_t region = regions().at(corner.x0, corner.y0);
+            const bool has_region = region_done_[region].load(std::memory_order_acquire) != 0;
+            tally.common_list =
+                narrowed(has_region ? region_lists_[region] : all_clusters_, rect, tally);
+            common.bundle =
+                bundle_around(picture_.view, canvas_.frame.width, canvas_.frame.height, rect);
+            common.list = &tally.common_list;
+            common.number = numbers.fetch_add(1, std::memory_order_relaxed) + 1;
+        }
+        return tally.common_list.certainly_empty ? nullptr : &common;
     }
 
     // `painted`: where it is empty it has its colour already.
@@ -418,6 +442,7 @@ class FrameJob::Work {
         const TileState& tile = canvas_.tiles[index];
         TracedTile& traced = *tally.traced;
         gather(traced, index, stride, first ? 0 : tile.stride);
+        traced.rays.common = common_of(index, tally);
         BundleIsolations& isolations = traced.isolations;
         const Field& field = *picture_.field;
         traced.surfaces.exact = !canvas_.frame.surface.empty();
@@ -644,7 +669,7 @@ class FrameJob::Work {
             if (looks_hold && tile.stride == 1) {
                 paint_looks(index, *tally.traced);
             } else {
-                look_again(index, looks_hold, *tally.traced);
+                look_again(index, looks_hold, tally);
             }
         }
         tally.shading += Clock::now() - start;
@@ -681,8 +706,9 @@ class FrameJob::Work {
     }
 
     // The surface and its colours at the t that stand in the frame, unless they are known.
-    void look_again(std::size_t index, bool looks_hold, TracedTile& traced) {
+    void look_again(std::size_t index, bool looks_hold, Tally& tally) {
         Frame& frame = canvas_.frame;
+        TracedTile& traced = *tally.traced;
         TileState& tile = canvas_.tiles[index];
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
         gather(traced, index, tile.stride, 0, !looks_hold);
@@ -697,6 +723,7 @@ class FrameJob::Work {
             if (looks_hold) traced.surfaces.take<count>(k, *looks, traced.place[k]);
         });
         if (!looks_hold) {
+            traced.rays.common = common_of(index, tally);
             find_surface(traced, tile.list, m);
             tile.looked_at = traced.surfaces.elements;
         }

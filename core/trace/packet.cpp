@@ -84,7 +84,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                                   Counts& counts) {
     if (surfaces != nullptr) surfaces->clear(rays.count);
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
-                             settings.skipping.windows)) {
+                             settings.skipping.windows, rays.common)) {
         for (std::size_t k = 0; k < rays.count; ++k) {
             isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
         }
@@ -201,7 +201,7 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         surfaces.nx[k] = std::numeric_limits<float>::quiet_NaN();
         if (surfaces.exact) surfaces.points[k].normal.x = nan;
     }
-    if (!bundle_field_.build(field, list, rays.bundle, tolerance)) return;
+    if (!bundle_field_.build(field, list, rays.bundle, tolerance, true, rays.common)) return;
     take(rays, true);
     for (std::size_t k = 0; k < rays.count; ++k) {
         lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
