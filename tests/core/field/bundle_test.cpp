@@ -261,6 +261,100 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
     std::printf("%d windows of several rays, %d of one\n", of_parts, of_rays);
 }
 
+// Bundles that are parts of a common one: their windows hold, none is missing where a ray is inside,
+// and they are to the bit what they would be if the others had never come.
+TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
+    std::uint64_t number = 0, stretches_alone = 0, stretches_shared = 0;
+    int inside = 0;
+    const auto every = [](const BundlePart&, double, double) { return true; };
+    const int no_end = std::numeric_limits<int>::max();
+    for (std::uint64_t seed = 70; seed < 78; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        Scene scene = tools::random_scene({.elements = 12}, seed);
+        if (seed % 2 == 0) {  // clusters
+            scene = {};
+            scene.threshold = 0.5;
+            for (int n = 0; n < 3000; ++n) {
+                scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(1)},
+                                          .width = random.uniform(0.05, 0.08)});
+            }
+        }
+        const Field field = compile(scene);
+        ASSERT_EQ(field.clusters.empty(), seed % 2 != 0);
+        const ElementList all = all_clusters(field);
+        const Vec3d origin = 4.0 * unit(random.in_cube(1));
+        const Vec3d axis = unit(0.2 * random.in_cube(1) - origin);
+        const CommonBundle common{{origin, axis, 0.03}, &all, ++number};
+        struct Seen {
+            double begin, end, rise;
+            std::vector<BundleEntry<float>> strong, weak;
+            bool operator==(const Seen& other) const {
+                const auto same = [](const auto& a, const auto& b) {
+                    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                                      [](const auto& p, const auto& q) {
+                                          return p.cx == q.cx && p.cy == q.cy && p.cz == q.cz &&
+                                                 p.strength == q.strength;
+                                      });
+                };
+                return begin == other.begin && end == other.end && rise == other.rise &&
+                       same(strong, other.strong) && same(weak, other.weak);
+            }
+        };
+        BundleField along;
+        for (int tile = 0; tile < 4; ++tile) {
+            const Vec3d tile_axis = unit(axis + 0.015 * unit(random.in_cube(1)));
+            const Bundle bundle{origin, tile_axis, 0.012};
+            const std::array parts{BundlePart{.axis = tile_axis, .spread = bundle.spread}};
+            const auto windows_of = [&](BundleField& by, const CommonBundle& in,
+                                        const auto& visit) {
+                std::vector<Seen> seen;
+                EXPECT_TRUE(by.build(field, all, bundle, 1e-6, true, &in));
+                by.for_windows(parts, {}, every, no_end, [&](Window& window, const BundlePart&) {
+                    const auto entries = [](const StageEntries<float>& stage) {
+                        return std::vector(stage.entry.begin(),
+                                           stage.entry.begin() +
+                                               static_cast<std::ptrdiff_t>(stage.size));
+                    };
+                    seen.push_back({window.begin, window.end, window.rise, entries(window.strong),
+                                    entries(window.weak)});
+                    visit(window);
+                    return !testing::Test::HasFailure();
+                });
+                return seen;
+            };
+            const auto ray = [&] {
+                return unit(tile_axis + 0.0119 * random.uniform(0, 1) * unit(random.in_cube(1)));
+            };
+            const std::vector<Seen> seen = windows_of(along, common, [&](Window& window) {
+                along.complete(window);
+                for (int n = 0; n < 4; ++n) {
+                    tools::expect_stages_hold(field, window, origin, ray(),
+                                              random.uniform(window.begin, window.end));
+                }
+            });
+            stretches_shared += along.stretches();
+            BundleField fresh;
+            const CommonBundle again{common.bundle, &all, ++number};
+            EXPECT_TRUE(seen == windows_of(fresh, again, [](Window&) {}));
+            stretches_alone += fresh.stretches();
+            for (int n = 0; n < 500; ++n) {
+                const double t = random.uniform(2, 6);
+                if (!(sample(field, origin + t * ray()).value > 1e-9)) continue;
+                ++inside;
+                ASSERT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const Seen& window) {
+                    return window.begin <= t && t <= window.end;
+                })) << "t " << t;
+            }
+        }
+    }
+    EXPECT_GT(inside, 500);
+    EXPECT_LT(stretches_shared, stretches_alone * 9 / 10);
+    std::printf("%d places inside; %llu stretches bounded, alone %llu\n", inside,
+                static_cast<unsigned long long>(stretches_shared),
+                static_cast<unsigned long long>(stretches_alone));
+}
+
 // Between two places of a window without kinks f' rises by `rise` times their distance at the
 // most, and falls by `fall` times it.
 TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
