@@ -264,6 +264,7 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
 // Bundles that are parts of a common one: their windows hold, none is missing where a ray is inside,
 // and they are to the bit what they would be if the others had never come.
 TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
+    BundleField along;
     std::uint64_t number = 0, stretches_alone = 0, stretches_shared = 0;
     int inside = 0;
     const auto every = [](const BundlePart&, double, double) { return true; };
@@ -301,7 +302,6 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
                        same(strong, other.strong) && same(weak, other.weak);
             }
         };
-        BundleField along;
         for (int tile = 0; tile < 4; ++tile) {
             const Vec3d tile_axis = unit(axis + 0.015 * unit(random.in_cube(1)));
             const Bundle bundle{origin, tile_axis, 0.012};
