@@ -36,9 +36,6 @@ constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 // Stretches up to this length are bounded in float, where the field suits it.
 constexpr double longest_in_float = 100;  // units
 
-// In units: common bundles are no wider where they begin.
-constexpr double widest_common = 8;
-
 // A window is made for each part of the rays where they are farther apart than this share of its
 // length.
 constexpr double parts_apart = 1;
@@ -121,8 +118,10 @@ void BundleField::share(const CommonBundle& common) {
         shared_number_ = common.number;
         shared_count_ = 0;
         const Interval<double> span = span_of(common.bundle);
-        // What is much wider has many elements that are of no use to its parts.
-        if (is_empty(span) || !(span.lo * common.bundle.spread <= widest_common * unit_)) return;
+        if (is_empty(span) || !(span.lo * common.bundle.spread <= widest_common * unit_) ||
+            !(span.hi - span.lo <= longest_common * long_stretch * unit_)) {
+            return;
+        }
         take_list(*common.list, shared_list_);
         add_shared(span.lo, span.hi, 0);
     }

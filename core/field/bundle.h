@@ -62,7 +62,8 @@ struct BundlePart {
 struct CommonBundle {
     Bundle bundle;
     const ElementList* list = nullptr;
-    std::uint64_t number = 0;  // not 0; another one for each field, tolerance, list and bundle
+    // Not 0; another one for each field, list and bundle, and for all else that `build` is given.
+    std::uint64_t number = 0;
 };
 
 // Those of a bundle's rays, component by component; null: not told.
@@ -203,6 +204,10 @@ class BundleField {
     static constexpr std::size_t greatest_depth = 30;
     // Of the greatest width, or nearly: longer stretches are halved before anything else is asked.
     static constexpr double long_stretch = 4;
+    // Common bundles are of no use where they are wider than so many units, since then many elements
+    // are in reach that its parts cannot see; nor where they are longer than so many long stretches,
+    // which a part would end by its own list.
+    static constexpr double widest_common = 8, longest_common = 128;
 
     // The elements that matter on a stretch, and what the others can add.
     struct Bounded {
@@ -285,12 +290,20 @@ class BundleField {
         return t1 - t0 > long_stretch * unit_;
     }
 
+    [[nodiscard]] bool is_too_wide_at(double t) const {
+        return t * home_.spread > widest_common * unit_;
+    }
+
     // Long stretches of the common bundle, as far as this one needs them; and then its own.
     template <class Wanted, class Visit>
     bool descend_shared(std::size_t index, const Wanted& wanted, const Visit& visit,
                         std::size_t depth = 0) {
         const double t0 = shared_[index].begin, t1 = shared_[index].end;
         if (t1 < span_.lo || t0 > span_.hi || !wanted(parts_[0], t0, t1)) return true;
+        if (is_too_wide_at(t0)) {
+            root_ = index == 0 ? &shared_list_ : &shared_[shared_[index].parent].bounded;
+            return descend(0, parts_[0], t0, t1, wanted, visit);
+        }
         if (left_-- <= 0) return give_up(visit);
         const bool halves = is_divisible(depth, t0, t1) && is_long(t0, t1);
         if (!bound_shared(index, halves)) return true;

@@ -112,6 +112,7 @@ class FrameJob::Work {
           region_lists_(canvas.grid.regions.size()),
           region_done_(canvas.grid.regions.size()),
           block_lists_(canvas.grid.blocks.size()),
+          has_block_list_(canvas.grid.blocks.size()),
           tile_begun_(canvas.grid.tiles.size()),
           passes_done_(canvas.grid.blocks.size()) {
         recolored_.add(settings_.recolored);
@@ -198,6 +199,7 @@ class FrameJob::Work {
         }
         if (settings_.order == Order::coarse_to_fine) begin_at_focus();
 
+        region_is_planned_ = needed;
         // The regions in the order in which the blocks will ask for them.
         for (const std::size_t block : block_order_) {
             const std::size_t region = region_of(block);
@@ -317,7 +319,10 @@ class FrameJob::Work {
             begun |= bit;
             done = take_tile(tile, block, pass, square, painted, tally);
         });
-        if (strides_[pass] <= tile_side) block_lists_[block] = {};  // each tile has its own
+        if (strides_[pass] <= tile_side) {  // each tile has its own
+            block_lists_[block] = {};
+            has_block_list_[block] = 0;
+        }
         return done;
     }
 
@@ -349,26 +354,36 @@ class FrameJob::Work {
         const std::size_t region = region_of(block);
         if (!wait_until(region_done_[region], 1)) return false;
         block_lists_[block] = narrowed(region_lists_[region], rect, tally);
+        has_block_list_[block] = 1;
         return true;
     }
 
-    // What the tiles of a block share; null where there is nothing of the kind.
-    const CommonBundle* common_of(std::size_t tile, Tally& tally) const {
+    // Sets what the tiles of a block share. False: cancelled on the way.
+    bool share(std::size_t tile, Tally& tally) const {
         static std::atomic<std::uint64_t> numbers{0};
         CommonBundle& common = tally.common;
         if (common.number == 0) {
             const PixelRect corner = tiles().rect(tile);
-            const PixelRect rect = blocks().rect(blocks().at(corner.x0, corner.y0));
-            const std::size_t region = regions().at(corner.x0, corner.y0);
-            const bool has_region = region_done_[region].load(std::memory_order_acquire) != 0;
-            tally.common_list =
-                narrowed(has_region ? region_lists_[region] : all_clusters_, rect, tally);
+            const std::size_t block = blocks().at(corner.x0, corner.y0);
+            const PixelRect rect = blocks().rect(block);
+            common.list = &block_lists_[block];
+            if (has_block_list_[block] == 0) {
+                // The same, whether or not other tiles have asked for the region's.
+                const std::size_t region = region_of(block);
+                const bool planned = region_is_planned_[region] != 0;
+                if (planned && !wait_until(region_done_[region], 1)) return false;
+                tally.common_list = narrowed(
+                    planned ? region_lists_[region]
+                            : narrowed(all_clusters_, regions().rect(region), tally),
+                    rect, tally);
+                common.list = &tally.common_list;
+            }
             common.bundle =
                 bundle_around(picture_.view, canvas_.frame.width, canvas_.frame.height, rect);
-            common.list = &tally.common_list;
             common.number = numbers.fetch_add(1, std::memory_order_relaxed) + 1;
         }
-        return tally.common_list.certainly_empty ? nullptr : &common;
+        tally.traced->rays.common = common.list->certainly_empty ? nullptr : &common;
+        return true;
     }
 
     // `painted`: where it is empty it has its colour already.
@@ -441,8 +456,8 @@ class FrameJob::Work {
     bool trace_tile(std::size_t index, int stride, bool first, Tally& tally) {
         const TileState& tile = canvas_.tiles[index];
         TracedTile& traced = *tally.traced;
+        if (!share(index, tally)) return false;
         gather(traced, index, stride, first ? 0 : tile.stride);
-        traced.rays.common = common_of(index, tally);
         BundleIsolations& isolations = traced.isolations;
         const Field& field = *picture_.field;
         traced.surfaces.exact = !canvas_.frame.surface.empty();
@@ -669,7 +684,8 @@ class FrameJob::Work {
             if (looks_hold && tile.stride == 1) {
                 paint_looks(index, *tally.traced);
             } else {
-                look_again(index, looks_hold, tally);
+                if (!looks_hold && !share(index, tally)) return false;
+                look_again(index, looks_hold, *tally.traced);
             }
         }
         tally.shading += Clock::now() - start;
@@ -706,9 +722,8 @@ class FrameJob::Work {
     }
 
     // The surface and its colours at the t that stand in the frame, unless they are known.
-    void look_again(std::size_t index, bool looks_hold, Tally& tally) {
+    void look_again(std::size_t index, bool looks_hold, TracedTile& traced) {
         Frame& frame = canvas_.frame;
-        TracedTile& traced = *tally.traced;
         TileState& tile = canvas_.tiles[index];
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
         gather(traced, index, tile.stride, 0, !looks_hold);
@@ -723,7 +738,6 @@ class FrameJob::Work {
             if (looks_hold) traced.surfaces.take<count>(k, *looks, traced.place[k]);
         });
         if (!looks_hold) {
-            traced.rays.common = common_of(index, tally);
             find_surface(traced, tile.list, m);
             tile.looked_at = traced.surfaces.elements;
         }
@@ -753,7 +767,9 @@ class FrameJob::Work {
     std::atomic<std::size_t> next_{0};
     std::vector<ElementList> region_lists_;
     std::vector<std::atomic<int>> region_done_;
+    std::vector<std::uint8_t> region_is_planned_;
     std::vector<ElementList> block_lists_;  // while tiles of the block have none yet
+    std::vector<std::uint8_t> has_block_list_;
     std::vector<std::uint8_t> tile_begun_;  // by this job; whoever is at the tile's block uses it
     std::vector<std::atomic<int>> passes_done_;  // by block
 
