@@ -200,6 +200,36 @@ TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
     }
 }
 
+// What was tested for lists and bounded, not only what came of it: nobody takes another list because
+// the one for him is not ready yet. Here the second picture's region takes longer than threads do.
+TEST(Render, WorkDoesNotDependOnThreads) {
+    constexpr int side = 32;
+    Scene scene;
+    scene.threshold = 0.5;
+    scene.camera = Camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 10};
+    tools::Random random(7);
+    for (int n = 0; n < 200000; ++n) {
+        scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(1)}, .width = 0.004});
+    }
+    const Picture picture = picture_of(scene, "proved", side, side);
+    std::array<std::uint64_t, 4> expected[2];
+    for (const int threads : {1, 2, 4}) {
+        Canvas canvas(side, side, false);
+        JobSettings settings;
+        settings.threads = threads;
+        settings.keep_lists = true;
+        for (int n = 0; n < 6; ++n) {
+            const SkippingCounts counts = render(picture, canvas, settings).counts.skipping;
+            const std::array work{counts.list_elements, counts.list_left_out, counts.stretches,
+                                  counts.stretches_ended};
+            std::array<std::uint64_t, 4>& first = expected[std::min(n, 1)];
+            if (threads == 1 && n < 2) first = work;
+            EXPECT_EQ(work, first) << threads;
+        }
+    }
+    EXPECT_LT(expected[1][0], expected[0][0]);
+}
+
 TEST(Render, BytesDoNotDependOnWhatWasOnTheCanvas) {
     Canvas canvas(frame_width, frame_height, true);
     Scene other = mixed_scene();
