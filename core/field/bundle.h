@@ -16,8 +16,10 @@
 //         0 <= rho'' <= 1 / rho;
 //     bounds of the rounding errors of f and f', so that the inner loop carries none of them; where
 //         an element is faint, those of float are small enough even for the fine stage.
-// Long stretches of large scenes are bounded by clusters (core/field/clusters.h); shorter ones by
-// elements, in float relative to their middle where the field suits that, else in double.
+// Long stretches are bounded for a wider bundle that several others are parts of (CommonBundle),
+// each once, and then for each of these. Those of large scenes are bounded by clusters
+// (core/field/clusters.h); shorter ones by elements, in float relative to their middle where the
+// field suits that, else in double.
 //
 // Places are relative to the middle of the window on the axis, so that the digits are spent where
 // the surface is, however far the origin: with M = origin + middle axis,
@@ -56,9 +58,9 @@ struct BundlePart {
     std::uint32_t first_part = 0, end_of_parts = 0;  // after this one in the array; none: equal
 };
 
-// A wider bundle, of the same origin, that others are parts of, and a list that is valid on it. What
-// is bounded on long stretches of it is kept as long as `number` stays the same, and so shared by
-// those who come one after another.
+// A wider bundle, of the same origin, that others are parts of, and a list that is valid on it.
+// What is bounded on long stretches of it is kept as long as `number` stays the same, and so shared
+// by those who come one after another.
 struct CommonBundle {
     Bundle bundle;
     const ElementList* list = nullptr;
@@ -204,9 +206,9 @@ class BundleField {
     static constexpr std::size_t greatest_depth = 30;
     // Of the greatest width, or nearly: longer stretches are halved before anything else is asked.
     static constexpr double long_stretch = 4;
-    // Common bundles are of no use where they are wider than so many units, since then many elements
-    // are in reach that its parts cannot see; nor where they are longer than so many long stretches,
-    // which a part would end by its own list.
+    // Common bundles are of no use where they are wider than so many units, since then many
+    // elements are in reach that its parts cannot see; nor where they are longer than so many long
+    // stretches, which a part would end by its own list.
     static constexpr double widest_common = 8, longest_common = 128;
 
     // The elements that matter on a stretch, and what the others can add.

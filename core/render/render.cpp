@@ -54,7 +54,7 @@ struct TilePlane {
 // its own.
 struct alignas(128) Tally {
     Counts counts;
-    CommonBundle common;  // that of the block that is being worked on; its number is 0 until a tile asks
+    CommonBundle common;  // of the block that is being worked on; number 0: nobody has asked yet
     ElementList common_list;
     Clock::duration tracing{}, shading{};
     std::size_t tiles = 0;
@@ -191,8 +191,8 @@ class FrameJob::Work {
             for_squares_in(tiles(), rect, [&](std::size_t tile) {
                 if (!selected(tile)) return;
                 any = true;
-                wants_list = wants_list || settings_.task != Task::shade ||
-                             !canvas_.tiles[tile].has_list;
+                wants_list =
+                    wants_list || settings_.task != Task::shade || !canvas_.tiles[tile].has_list;
             });
             if (any) block_order_.push_back(block);
             if (wants_list) needed[regions().at(rect.x0, rect.y0)] = 1;
@@ -372,10 +372,10 @@ class FrameJob::Work {
                 const std::size_t region = region_of(block);
                 const bool planned = region_is_planned_[region] != 0;
                 if (planned && !wait_until(region_done_[region], 1)) return false;
-                tally.common_list = narrowed(
-                    planned ? region_lists_[region]
-                            : narrowed(all_clusters_, regions().rect(region), tally),
-                    rect, tally);
+                tally.common_list =
+                    narrowed(planned ? region_lists_[region]
+                                     : narrowed(all_clusters_, regions().rect(region), tally),
+                             rect, tally);
                 common.list = &tally.common_list;
             }
             common.bundle =

@@ -261,8 +261,8 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
     std::printf("%d windows of several rays, %d of one\n", of_parts, of_rays);
 }
 
-// Bundles that are parts of a common one: their windows hold, none is missing where a ray is inside,
-// and they are to the bit what they would be if the others had never come.
+// Bundles that are parts of a common one: their windows hold, none is missing where a ray is
+// inside, and they are to the bit what they would be if the others had never come.
 TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
     BundleField along;
     std::uint64_t number = 0, stretches_alone = 0, stretches_shared = 0;
@@ -312,9 +312,9 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
                 EXPECT_TRUE(by.build(field, all, bundle, 1e-6, true, &in));
                 by.for_windows(parts, {}, every, no_end, [&](Window& window, const BundlePart&) {
                     const auto entries = [](const StageEntries<float>& stage) {
-                        return std::vector(stage.entry.begin(),
-                                           stage.entry.begin() +
-                                               static_cast<std::ptrdiff_t>(stage.size));
+                        return std::vector(
+                            stage.entry.begin(),
+                            stage.entry.begin() + static_cast<std::ptrdiff_t>(stage.size));
                     };
                     seen.push_back({window.begin, window.end, window.rise, entries(window.strong),
                                     entries(window.weak)});
@@ -342,9 +342,10 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
                 const double t = random.uniform(2, 6);
                 if (!(sample(field, origin + t * ray()).value > 1e-9)) continue;
                 ++inside;
-                ASSERT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const Seen& window) {
-                    return window.begin <= t && t <= window.end;
-                })) << "t " << t;
+                ASSERT_TRUE(std::any_of(
+                    seen.begin(), seen.end(),
+                    [&](const Seen& window) { return window.begin <= t && t <= window.end; }))
+                    << "t " << t;
             }
         }
     }

@@ -200,8 +200,9 @@ TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
     }
 }
 
-// What was tested for lists and bounded, not only what came of it: nobody takes another list because
-// the one for him is not ready yet. Here the second picture's region takes longer than threads do.
+// What was tested for lists and bounded, not only what came of it: nobody takes another list
+// because the one for him is not ready yet. Here the second picture's region takes longer than
+// threads do.
 TEST(Render, WorkDoesNotDependOnThreads) {
     constexpr int side = 32;
     Scene scene;
