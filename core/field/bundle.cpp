@@ -113,7 +113,8 @@ void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
 }
 
 void BundleField::share(const CommonBundle& common) {
-    if (!(common.bundle.spread <= 0.5)) return;
+    // Few elements are bounded sooner than looked up.
+    if (!(common.bundle.spread <= 0.5) || field_->size() < parts_elements) return;
     if (shared_number_ != common.number) {
         shared_number_ = common.number;
         shared_count_ = 0;

@@ -123,7 +123,8 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                              std::int32_t{Lanes::walking}, std::int32_t{Lanes::doubtful});
             }
-            const Walked walked = steps.walk(window, T, unit, part.first, part.end, lanes_);
+            const Walked walked =
+                steps.walk(window, T, unit, settings.greatest_cell, part.first, part.end, lanes_);
             counts.evaluations += walked.steps;
             counts.element_evaluations +=
                 walked.steps * window.strong.size + walked.close_steps * window.weak.size;

@@ -158,8 +158,6 @@ template <>
 struct Stage<float> {
     static constexpr float tight = 0x1p-18f, rough = 0x1p-10f;
     static constexpr double last_place = 0x1p-22, tiny = 1e-20, huge = 3e38;
-    // Of half the window: the first step of the enclosure does the rest.
-    static constexpr double settled = 0x1p-6;
     static constexpr int most_guesses = 6;
     static constexpr Lanes::State takes = Lanes::walking, leaves = Lanes::doubtful;
 
@@ -169,6 +167,7 @@ struct Stage<float> {
 
     const Window& window;
     double unit;
+    double settled;  // of half the window: the enclosure does the rest
 
     const auto& entries() const { return window.strong; }
     const StageBounds& bounds() const { return window.strong_bounds; }
@@ -302,7 +301,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     const V<Tag> begin = c(stage.begin()), end = c(stage.end());
     // The sum tau + step is off by half a unit of its last place.
     const V<Tag> slack = c(S::last_place * stage.end());
-    const V<Tag> settled = c(S::settled * stage.end());
+    const V<Tag> settled = c(stage.settled * stage.end());
     const V<Tag> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
     const V<Tag> least = c(least_square<Real>);
     Walked walked;
@@ -457,9 +456,17 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     return walked;
 }
 
-Walked walk(const Window& window, double threshold, double unit, std::size_t first, std::size_t end,
-            Lanes& lanes) {
-    return walk_stage(F(), Stage<float>{window, unit}, threshold, first, end, lanes);
+// Newton's step of x half windows leaves some x^2 of one, the enclosure's first some x^4: little
+// beside a cell.
+double settled_share(const Window& window, double cell) {
+    const double in_half_windows = 2 * cell / (window.end - window.begin);
+    return std::clamp(std::sqrt(std::sqrt(0.125 * in_half_windows)), 0x1p-10, 0x1p-5);
+}
+
+Walked walk(const Window& window, double threshold, double unit, double cell, std::size_t first,
+            std::size_t end, Lanes& lanes) {
+    const Stage<float> stage{window, unit, settled_share(window, cell)};
+    return walk_stage(F(), stage, threshold, first, end, lanes);
 }
 
 std::uint64_t walk_again(const Window& window, double threshold, std::size_t first, std::size_t end,

@@ -60,9 +60,10 @@ struct PacketSteps {
     bool (*any)(const Lanes& lanes, Lanes::State state, std::size_t first, std::size_t end);
 
     // Safe steps of every walking lane of first .. end from the window's begin to its end, in
-    // float: lanes that come to a root become candidates, those that float cannot decide doubtful.
-    Walked (*walk)(const Window& window, double threshold, double unit, std::size_t first,
-                   std::size_t end, Lanes& lanes);
+    // float: lanes that come to a root become candidates, so close to it that `enclose` on cells of
+    // that length hardly ever needs a second step; those that float cannot decide become doubtful.
+    Walked (*walk)(const Window& window, double threshold, double unit, double cell,
+                   std::size_t first, std::size_t end, Lanes& lanes);
 
     // The same in double, from the window's begin, for the doubtful ones: they become candidates,
     // walk on or are undecided. The window has no faint entries. Counts pairs of a lane and a step.

@@ -326,7 +326,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     window.strong.count[0] = 1;
     window.strong.size = 1;
     window.coarse_usable = true;
-    packet_steps().walk(window, 1, 1, 0, 1, *lanes);
+    packet_steps().walk(window, 1, 1, 1e-6, 0, 1, *lanes);
     EXPECT_EQ(lanes->state[0], Lanes::doubtful);
 }
 
