@@ -151,8 +151,9 @@ class BundleField {
 
     // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
     // be left out; unless it `skips_windows`, none ends by the sum of peaks. Long stretches are
-    // bounded for the `common` bundle, unless that is null or much wider than elements are. False:
-    // numbers beyond what the bounds are proved for; nothing else may be called.
+    // bounded for the `common` bundle, unless that is null, much wider than elements are or very
+    // long, or elements are few. False: numbers beyond what the bounds are proved for; nothing else
+    // may be called.
     bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
                bool skips_windows = true, const CommonBundle* common = nullptr);
 
