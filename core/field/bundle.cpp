@@ -115,19 +115,19 @@ void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
 void BundleField::share(const CommonBundle& common) {
     // Few elements are bounded sooner than looked up.
     if (!(common.bundle.spread <= 0.5) || field_->size() < parts_elements) return;
+    home_ = {.axis = common.bundle.axis, .spread = common.bundle.spread};
     if (shared_number_ != common.number) {
         shared_number_ = common.number;
         shared_count_ = 0;
         const Interval<double> span = span_of(common.bundle);
-        if (is_empty(span) || !(span.lo * common.bundle.spread <= widest_common * unit_) ||
-            !(span.hi - span.lo <= longest_common * long_stretch * unit_)) {
+        if (is_empty(span) || is_too_wide_at(span.lo) ||
+            span.hi - span.lo > longest_common * long_stretch * unit_) {
             return;
         }
         take_list(*common.list, shared_list_);
         add_shared(span.lo, span.hi, 0);
     }
     is_shared_ = shared_count_ > 0;
-    home_ = {.axis = common.bundle.axis, .spread = common.bundle.spread};
 }
 
 void BundleField::add_shared(double begin, double end, std::size_t parent) {

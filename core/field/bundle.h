@@ -303,8 +303,8 @@ class BundleField {
                         std::size_t depth = 0) {
         const double t0 = shared_[index].begin, t1 = shared_[index].end;
         if (t1 < span_.lo || t0 > span_.hi || !wanted(parts_[0], t0, t1)) return true;
-        if (is_too_wide_at(t0)) {
-            root_ = index == 0 ? &shared_list_ : &shared_[shared_[index].parent].bounded;
+        if (is_too_wide_at(t0)) {  // the whole is not, or nothing is shared
+            root_ = &shared_[shared_[index].parent].bounded;
             return descend(0, parts_[0], t0, t1, wanted, visit);
         }
         if (left_-- <= 0) return give_up(visit);

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <system_error>
@@ -55,7 +56,6 @@ struct TilePlane {
 struct alignas(128) Tally {
     Counts counts;
     CommonBundle common;  // of the block that is being worked on; number 0: nobody has asked yet
-    ElementList common_list;
     Clock::duration tracing{}, shading{};
     std::size_t tiles = 0;
     std::vector<std::uint8_t> reached;  // by element
@@ -112,7 +112,6 @@ class FrameJob::Work {
           region_lists_(canvas.grid.regions.size()),
           region_done_(canvas.grid.regions.size()),
           block_lists_(canvas.grid.blocks.size()),
-          has_block_list_(canvas.grid.blocks.size()),
           tile_begun_(canvas.grid.tiles.size()),
           passes_done_(canvas.grid.blocks.size()) {
         recolored_.add(settings_.recolored);
@@ -301,9 +300,9 @@ class FrameJob::Work {
     bool take_block(std::size_t block, std::size_t pass, Tally& tally) {
         const PixelRect rect = blocks().rect(block);
         tally.common.number = 0;
-        if (pass == 0 && !list_block(block, tally)) return false;
+        if (pass == 0 && !list_tiles_of(block, tally)) return false;
         // Of a square larger than a tile the first tile alone, unless all are done at once.
-        const bool sparse = strides_[pass] > tile_side && !block_lists_[block].certainly_empty;
+        const bool sparse = strides_[pass] > tile_side && !is_listed_empty(block);
         const int square = sparse ? strides_[pass] : tile_side;
         std::uint32_t begun = 0;  // squares, one bit each
         bool done = true;
@@ -319,18 +318,19 @@ class FrameJob::Work {
             begun |= bit;
             done = take_tile(tile, block, pass, square, painted, tally);
         });
-        if (strides_[pass] <= tile_side) {  // each tile has its own
-            block_lists_[block] = {};
-            has_block_list_[block] = 0;
-        }
+        if (strides_[pass] <= tile_side) block_lists_[block].reset();  // each tile has its own
         return done;
+    }
+
+    bool is_listed_empty(std::size_t block) const {
+        return block_lists_[block] && block_lists_[block]->certainly_empty;
     }
 
     // Whether all tiles of the block are empty, and this job's, and not all painted so already.
     bool paints_at_once(std::size_t block, std::size_t pass) const {
         // Shading tells by what a tile shows whether it is to be painted.
         if (pass > 0 || settings_.task == Task::shade) return false;
-        if (!block_lists_[block].certainly_empty) return false;
+        if (!is_listed_empty(block)) return false;
         bool all = true, all_stand = true;
         for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
             all = all && selected(tile) && !canvas_.tiles[tile].has_list;
@@ -343,43 +343,40 @@ class FrameJob::Work {
         return canvas_.stands_empty(index, picture_.lighting.background);
     }
 
-    // The block's list, where one of its tiles will need it.
-    bool list_block(std::size_t block, Tally& tally) {
-        const PixelRect rect = blocks().rect(block);
+    // The block's list, where one of its tiles will need it for its own. False: cancelled on the
+    // way.
+    bool list_tiles_of(std::size_t block, Tally& tally) {
         bool needed = false;
-        for_squares_in(tiles(), rect, [&](std::size_t tile) {
+        for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
             needed = needed || (selected(tile) && !canvas_.tiles[tile].has_list);
         });
-        if (!needed) return true;
+        return !needed || list_block(block, tally);
+    }
+
+    bool list_block(std::size_t block, Tally& tally) {
+        if (block_lists_[block]) return true;
+        // The same from either, so that it does not matter who else asks for the region's.
         const std::size_t region = region_of(block);
-        if (!wait_until(region_done_[region], 1)) return false;
-        block_lists_[block] = narrowed(region_lists_[region], rect, tally);
-        has_block_list_[block] = 1;
+        const bool planned = region_is_planned_[region] != 0;
+        if (planned && !wait_until(region_done_[region], 1)) return false;
+        block_lists_[block] =
+            narrowed(planned ? region_lists_[region]
+                             : narrowed(all_clusters_, regions().rect(region), tally),
+                     blocks().rect(block), tally);
         return true;
     }
 
     // Sets what the tiles of a block share. False: cancelled on the way.
-    bool share(std::size_t tile, Tally& tally) const {
+    bool share(std::size_t tile, Tally& tally) {
         static std::atomic<std::uint64_t> numbers{0};
         CommonBundle& common = tally.common;
         if (common.number == 0) {
             const PixelRect corner = tiles().rect(tile);
             const std::size_t block = blocks().at(corner.x0, corner.y0);
-            const PixelRect rect = blocks().rect(block);
-            common.list = &block_lists_[block];
-            if (has_block_list_[block] == 0) {
-                // The same, whether or not other tiles have asked for the region's.
-                const std::size_t region = region_of(block);
-                const bool planned = region_is_planned_[region] != 0;
-                if (planned && !wait_until(region_done_[region], 1)) return false;
-                tally.common_list =
-                    narrowed(planned ? region_lists_[region]
-                                     : narrowed(all_clusters_, regions().rect(region), tally),
-                             rect, tally);
-                common.list = &tally.common_list;
-            }
-            common.bundle =
-                bundle_around(picture_.view, canvas_.frame.width, canvas_.frame.height, rect);
+            if (!list_block(block, tally)) return false;
+            common.bundle = bundle_around(picture_.view, canvas_.frame.width, canvas_.frame.height,
+                                          blocks().rect(block));
+            common.list = &*block_lists_[block];
             common.number = numbers.fetch_add(1, std::memory_order_relaxed) + 1;
         }
         tally.traced->rays.common = common.list->certainly_empty ? nullptr : &common;
@@ -396,7 +393,7 @@ class FrameJob::Work {
         tile_begun_[index] = 1;
         if (first) {
             if (!tile.has_list) {
-                tile.list = narrowed(block_lists_[block], tiles().rect(index), tally);
+                tile.list = narrowed(*block_lists_[block], tiles().rect(index), tally);
                 tile.has_list = true;
             }
             ++tally.tiles;
@@ -768,8 +765,7 @@ class FrameJob::Work {
     std::vector<ElementList> region_lists_;
     std::vector<std::atomic<int>> region_done_;
     std::vector<std::uint8_t> region_is_planned_;
-    std::vector<ElementList> block_lists_;  // while tiles of the block have none yet
-    std::vector<std::uint8_t> has_block_list_;
+    std::vector<std::optional<ElementList>> block_lists_;  // while somebody is at the block's tiles
     std::vector<std::uint8_t> tile_begun_;  // by this job; whoever is at the tile's block uses it
     std::vector<std::atomic<int>> passes_done_;  // by block
 

@@ -330,6 +330,52 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     EXPECT_EQ(lanes->state[0], Lanes::doubtful);
 }
 
+// What the walk hands on is so close to its root that one step of the enclosure, in double, does
+// for nearly all, on coarse cells and on fine ones.
+TEST(Packet, GuessesAreAsCloseAsTheCellsAsk) {
+    for (const double cell : {0x1p-21, 0x1p-31}) {
+        std::uint64_t candidates = 0, steps = 0;
+        for (std::uint64_t seed = 90; seed < 110; ++seed) {
+            Random random(seed);
+            const Field field = compile(tools::mixed_scene(60, seed));
+            const auto rays = bundle_around(
+                {{0, 0, 3.9}, unit(0.3 * random.in_cube(1) - Vec3d{0, 0, 3.9})}, 0.02, 256, random);
+            BundleField along;
+            ASSERT_TRUE(along.build(field, all_elements(field), rays->bundle, 1e-9));
+            BundleIsolations found;
+            const auto lanes = std::make_unique<Lanes>();
+            lanes->count = rays->count;
+            lanes->dx = rays->dx.data();
+            lanes->dy = rays->dy.data();
+            lanes->dz = rays->dz.data();
+            lanes->t_lo = found.t_lo.data();
+            lanes->t_hi = found.t_hi.data();
+            packet_steps().prepare(*lanes);
+            const std::array parts{BundlePart{.axis = rays->bundle.axis,
+                                              .spread = rays->bundle.spread,
+                                              .end = static_cast<std::uint32_t>(rays->count)}};
+            const auto every = [](const BundlePart&, double, double) { return true; };
+            const double T = along.threshold(), unit = along.unit();
+            along.for_windows(parts, {}, every, 1000, [&](Window& window, const BundlePart& all) {
+                if (!window.coarse_usable) return false;
+                const double length = cell * field.least_width;
+                packet_steps().walk(window, T, unit, length, 0, all.end, *lanes);
+                candidates += static_cast<std::uint64_t>(
+                    std::count(lanes->state.begin(), lanes->state.begin() + all.end,
+                               std::int32_t{Lanes::candidate}));
+                along.complete(window);
+                steps += packet_steps().enclose(window, T, unit, length, 0, 0, all.end,
+                                                Lanes::undecided, Lanes::undecided, *lanes);
+                return true;
+            });
+        }
+        EXPECT_GT(candidates, 500u);
+        EXPECT_LT(static_cast<double>(steps), 1.15 * static_cast<double>(candidates));
+        std::printf("%llu candidates, %llu steps\n", static_cast<unsigned long long>(candidates),
+                    static_cast<unsigned long long>(steps));
+    }
+}
+
 // Large strengths that cancel, beside an element so thin that windows may become very short: the
 // rays are left to other means after a bounded number of windows, and none is called a miss.
 TEST(Packet, WorkIsBounded) {
