@@ -406,7 +406,8 @@ class FrameJob::Work {
             same = stands_empty(index);
             done = same || shade_again(index, tally);
         } else if (!tile.list.certainly_empty) {
-            done = trace_tile(index, strides_[pass], first, tally);
+            // Of a larger square the one pixel of the first tile that is selected, wherever that is.
+            done = trace_tile(index, std::min(strides_[pass], tile_side), first, tally);
         } else if (first) {
             same = !painted && stands_empty(index);
             if (!painted && !same) paint_empty(tiles().rect(index));
@@ -597,7 +598,7 @@ class FrameJob::Work {
         // Primary rays have length 1, so that a span of t is a length.
         tile.enclosure_width_max = std::max(tile.enclosure_width_max, tally.widest);
         tile.unresolved_width_max = std::max(tile.unresolved_width_max, tally.widest_unresolved);
-        tile.stride = std::min(stride, tile_side);
+        tile.stride = stride;
     }
 
     // Calls visit.operator()<count>(k, p) for runs of rays, from k on, whose pixels stand side by

@@ -26,7 +26,8 @@ BundleTally tally_of_target(const BundleIsolations& isolations, std::size_t coun
     const auto* const status = reinterpret_cast<const std::uint8_t*>(isolations.status.data());
     BundleTally tally;
     for (std::size_t first = 0; first < count; first += hn::Lanes(bytes)) {
-        const auto in = hn::FirstN(bytes, count - first);
+        // Below AVX-512, x86 takes a count of 8-bit lanes as a signed byte: no more than there are.
+        const auto in = hn::FirstN(bytes, std::min(count - first, hn::Lanes(bytes)));
         const auto values = hn::LoadU(bytes, status + first);
         for (std::size_t kind = 0; kind < tally.rays.size(); ++kind) {
             const auto same = hn::Eq(values, hn::Set(bytes, static_cast<std::uint8_t>(kind)));

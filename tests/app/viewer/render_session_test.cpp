@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -58,8 +60,13 @@ SceneValue with_left_blob_at(double x) {
     return std::make_shared<const Scene>(std::move(scene));
 }
 
-// What `ivory render` draws.
-std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize picture_size = size) {
+// What `ivory render` draws, and how many of its pixels have each Status.
+struct Rendered {
+    std::vector<Rgba8> color;
+    std::array<std::uint64_t, 5> pixels{};
+};
+
+Rendered rendered_and_counted(const Scene& scene, const Camera& c, WindowSize picture_size) {
     Scene seen = scene;
     seen.camera = c;
     const Picture picture = make_picture(seen, picture_size.width, picture_size.height,
@@ -68,7 +75,16 @@ std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize pict
     JobSettings settings;
     settings.threads = 2;
     render(picture, canvas, settings);
-    return {&canvas.frame.color[0], &canvas.frame.color[0] + canvas.frame.size()};
+    Rendered rendered;
+    rendered.color.assign(&canvas.frame.color[0], &canvas.frame.color[0] + canvas.frame.size());
+    for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+        ++rendered.pixels[static_cast<std::size_t>(canvas.frame.status[p])];
+    }
+    return rendered;
+}
+
+std::vector<Rgba8> rendered(const Scene& scene, const Camera& c, WindowSize picture_size = size) {
+    return rendered_and_counted(scene, c, picture_size).color;
 }
 
 class Session : public testing::Test {
@@ -94,6 +110,21 @@ class Session : public testing::Test {
             return session.state().final;
         });
     }
+    // The picture at rest is that of `render`, and what is said of its pixels adds up.
+    void expect_as_render(const Scene& scene, const Camera& c = camera(),
+                          WindowSize picture_size = size) {
+        const Rendered expected = rendered_and_counted(scene, c, picture_size);
+        EXPECT_TRUE(session.shown().color == expected.color);
+        const PictureState& state = session.state();
+        EXPECT_TRUE(state.final);
+        const auto count = [&](Status status) {
+            return expected.pixels[static_cast<std::size_t>(status)];
+        };
+        EXPECT_EQ(state.hit, count(Status::hit));
+        EXPECT_EQ(state.miss, count(Status::miss));
+        EXPECT_EQ(state.unresolved, count(Status::unresolved));
+        EXPECT_EQ(state.progress, 1);
+    }
     bool wait_first() {
         return wait_until([this] { return session.first_picture_ready(); });
     }
@@ -109,7 +140,7 @@ TEST_F(Session, TheFinalPictureIsThatOfRender) {
     const auto scene = std::make_shared<const Scene>(two_blobs());
     show(scene);
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+    expect_as_render(*scene, camera());
     const PictureState& state = session.state();
     EXPECT_EQ(state.scene, scene);
     EXPECT_EQ(state.size, size);
@@ -250,14 +281,14 @@ TEST_F(Session, AnEditCancelsRefinement) {
     EXPECT_EQ(totals.begun, 2u);
     EXPECT_EQ(totals.cancelled, 1u);
     EXPECT_LT(totals.pixels_traced, static_cast<std::uint64_t>(large.width * large.height));
-    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), other));
+    expect_as_render(*with_left_blob_at(-1.2), other);
 }
 
 TEST_F(Session, OnlyTheLastOfManyRequestsHasToBeDone) {
     for (int i = 0; i < 100; ++i) show(with_left_blob_at(-1.2 + 0.01 * i));
     ASSERT_TRUE(wait_final());
     EXPECT_LT(session.totals().begun, 100u);
-    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2 + 0.01 * 99), camera()));
+    expect_as_render(*with_left_blob_at(-1.2 + 0.01 * 99), camera());
 }
 
 TEST_F(Session, AColourTracesNothing) {
@@ -273,10 +304,10 @@ TEST_F(Session, AColourTracesNothing) {
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.totals().tiles_traced, before.tiles_traced);
     EXPECT_EQ(session.totals().pixels_traced, before.pixels_traced);
-    EXPECT_EQ(session.shown().color, rendered(*recoloured, camera()));
+    expect_as_render(*recoloured, camera());
     show(scene);
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+    expect_as_render(*scene, camera());
 }
 
 // Colours, lights and shapes that change faster than they can be shown: what was cut short is made
@@ -310,7 +341,8 @@ TEST_F(Session, EditsThatOvertakeEachOtherEndAsRender) {
             session.poll(FirstPicture::any);
         }
         ASSERT_TRUE(wait_final());
-        ASSERT_EQ(session.shown().color, rendered(scene, camera(), large)) << "round " << round;
+        SCOPED_TRACE("round " + std::to_string(round));
+        expect_as_render(scene, camera(), large);
     }
 }
 
@@ -339,7 +371,7 @@ TEST_F(Session, TilesLeftForLaterAreTracedThoughColoursComeBetween) {
         show(std::make_shared<const Scene>(scene), camera(), large);
         ASSERT_TRUE(wait_final());
         EXPECT_GE(session.totals().tiles_traced, before + session.state().tiles);
-        EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+        expect_as_render(scene, camera(), large);
     }
 }
 
@@ -355,7 +387,7 @@ TEST_F(Session, ABackgroundAfterAMoveReachesEmptyTiles) {
     scene.background = {0.7, 0.2, 0.4};
     show(std::make_shared<const Scene>(scene), camera(), large);
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+    expect_as_render(scene, camera(), large);
 }
 
 TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {
@@ -371,7 +403,7 @@ TEST_F(Session, AMovedElementTracesFirstWhatItTouches) {
     // and in the end everything, so that not a byte is an older scene's
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.totals().tiles_traced, 2 * all);
-    EXPECT_EQ(session.shown().color, rendered(*moved, camera()));
+    expect_as_render(*moved, camera());
 }
 
 TEST_F(Session, ADragEndsExactlyWhereverItWent) {
@@ -385,7 +417,35 @@ TEST_F(Session, ADragEndsExactlyWhereverItWent) {
     }
     show(with_left_blob_at(-1.2));
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(*with_left_blob_at(-1.2), camera()));
+    expect_as_render(*with_left_blob_at(-1.2), camera());
+}
+
+// Of an edit that touches a few tiles here and there, and of its undoing: tiles are selected that
+// are not the first of the squares which the first picture takes one of.
+TEST_F(Session, AnEditAndItsUndoAreCountedToThePixel) {
+    constexpr WindowSize large{1000, 620};
+    std::mt19937 random(tools::announced_seed(19));
+    Scene scene = two_blobs();
+    for (int n = 0; n < 6; ++n) {
+        const auto share = [&] { return static_cast<double>(random() % 1000) / 1000; };
+        scene.elements.push_back(point({3 * share() - 1.5, 2 * share() - 1, share()},
+                                       KernelKind::wyvill, 0.3 + 0.3 * share(), {0.2, 0.8, 0.2}));
+    }
+    show(std::make_shared<const Scene>(scene), camera(), large);
+    ASSERT_TRUE(wait_final());
+    expect_as_render(scene, camera(), large);
+    for (int round = 0; round < 6; ++round) {
+        SCOPED_TRACE("round " + std::to_string(round));
+        Scene edited = scene;
+        auto& place = std::get<PointSkeleton>(edited.elements[random() % 8].skeleton).position;
+        place.x += 0.4;
+        place.y += 0.2;
+        for (const Scene& next : {edited, scene}) {
+            show(std::make_shared<const Scene>(next), camera(), large);
+            ASSERT_TRUE(wait_final());
+            expect_as_render(next, camera(), large);
+        }
+    }
 }
 
 // A lower threshold lets the surface grow into tiles that a list had proved empty.
@@ -397,7 +457,7 @@ TEST_F(Session, AnotherThresholdEndsAsRender) {
         scene.threshold = share * threshold;
         show(std::make_shared<const Scene>(scene), camera(), large);
         ASSERT_TRUE(wait_final());
-        EXPECT_EQ(session.shown().color, rendered(scene, camera(), large));
+        expect_as_render(scene, camera(), large);
     }
 }
 
@@ -419,14 +479,14 @@ TEST_F(Session, ADragThroughACrowdEndsAsRender) {
         ASSERT_TRUE(wait_first());
     }
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(scene, camera()));
+    expect_as_render(scene, camera());
     // The lists of the tiles outlast another threshold, and colours what was moved.
     for (const double threshold : {0.45, 0.6, 2.0, 0.5}) {
         scene.threshold = threshold;
         scene.elements[8].color = {threshold / 4, 1, 0};
         show(std::make_shared<const Scene>(scene));
         ASSERT_TRUE(wait_final());
-        EXPECT_EQ(session.shown().color, rendered(scene, camera()));
+        expect_as_render(scene, camera());
     }
 }
 
@@ -444,7 +504,7 @@ TEST_F(Session, AnotherSizeReplacesThePictureAsAWhole) {
         }));
         EXPECT_TRUE(replaced);
         EXPECT_EQ(session.shown().size, other);
-        EXPECT_EQ(session.shown().color, rendered(*scene, camera(), other));
+        expect_as_render(*scene, camera(), other);
     }
 }
 
@@ -455,7 +515,7 @@ TEST_F(Session, AnEmptySceneIsSaidToBeEmpty) {
     ASSERT_TRUE(wait_final());
     EXPECT_TRUE(session.state().surface_certainly_empty);
     EXPECT_EQ(session.state().hit, 0u);
-    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+    expect_as_render(*scene, camera());
 }
 
 TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
@@ -477,11 +537,11 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     EXPECT_FALSE(session.poll(FirstPicture::any).any());
     show(scene, camera(), {50, 300});
     ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, rendered(*scene, camera(), {50, 300}));
+    expect_as_render(*scene, camera(), {50, 300});
     show(scene);
     ASSERT_TRUE(wait_final());
     EXPECT_TRUE(session.state().fault.empty());
-    EXPECT_EQ(session.shown().color, rendered(*scene, camera()));
+    expect_as_render(*scene, camera());
 }
 
 TEST(RenderSessionLife, EndsWhileItWorks) {

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <new>
 #include <numeric>
+#include <random>
 #include <set>
 #include <string>
 #include <thread>
@@ -20,6 +21,7 @@
 #include "core/render/statistics.h"
 #include "core/trace/trace.h"
 #include "tests/tools/random_scene.h"
+#include "tests/tools/seed.h"
 
 namespace ivory {
 namespace {
@@ -384,6 +386,68 @@ TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
             squares_begun.insert(Squares(width, height, first_square).at(rect.x0, rect.y0));
         }
         EXPECT_EQ(squares_begun, squares_to_begin);
+    }
+}
+
+// The statuses that are in the frame, counted one by one.
+std::array<std::uint64_t, 5> counted(const Frame& frame) {
+    std::array<std::uint64_t, 5> count{};
+    for (std::size_t p = 0; p < frame.size(); ++p) {
+        ++count[static_cast<std::size_t>(frame.status[p])];
+    }
+    return count;
+}
+
+// Tiles of 256 pixels, and tiles that the picture's edge cuts off.
+TEST(Render, TheTallyIsThatOfThePixels) {
+    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+        Canvas canvas(frame_width, frame_height, false);
+        JobSettings settings;
+        settings.order = order;
+        render(picture_of(mixed_scene()), canvas, settings);
+        const std::array<std::uint64_t, 5> expected = counted(canvas.frame);
+        EXPECT_EQ(pixel_statistics(canvas).pixels, expected);
+        EXPECT_GT(expected[0], 1000u);
+        EXPECT_EQ(std::accumulate(expected.begin(), expected.end(), std::uint64_t{0}),
+                  canvas.frame.size());
+    }
+}
+
+// Of any tiles, be they at the corners of the squares that a first pass takes or not: each of their
+// pixels is traced, and none is left over from the picture before.
+TEST(Render, SelectedTilesAreTracedWhole) {
+    constexpr int width = 900, height = 760;
+    const Picture picture = picture_of(mixed_scene(), "proved", width, height);
+    Scene other = mixed_scene();
+    other.threshold = 0.3;
+    other.background = {0.5, 0.5, 0.5};
+    Canvas expected(width, height, false), before(width, height, false);
+    render(picture, expected, {});
+    const Picture picture_before = picture_of(other, "proved", width, height);
+    render(picture_before, before, {});
+    std::mt19937 random(tools::announced_seed(3));
+    for (const unsigned one_in : {2u, 5u, 40u}) {
+        Canvas canvas(width, height, false);
+        render(picture_before, canvas, {});
+        JobSettings settings;
+        settings.order = Order::coarse_to_fine;
+        settings.threads = 2;
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
+            settings.selected.push_back(random() % one_in == 0);
+        }
+        render(picture, canvas, settings);
+        for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
+            const PixelRect rect = canvas.grid.tiles.rect(t);
+            const Frame& wanted = (settings.selected[t] != 0 ? expected : before).frame;
+            for (int j = rect.y0; j < rect.y1; ++j) {
+                for (int i = rect.x0; i < rect.x1; ++i) {
+                    const std::size_t p = canvas.frame.at(i, j);
+                    ASSERT_EQ(canvas.frame.color[p], wanted.color[p]) << i << ", " << j;
+                    ASSERT_EQ(canvas.frame.status[p], wanted.status[p]) << i << ", " << j;
+                }
+            }
+        }
+        EXPECT_EQ(pixel_statistics(canvas).pixels, counted(canvas.frame));
     }
 }
 
