@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/interrupt.h"
 #include "app/cli/output.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
@@ -202,7 +203,7 @@ void run(const InfoArguments& arguments) {
         output.write(arguments.json ? json_of_methods() : text_of_methods());
         return;
     }
-    const Scene scene = read_scene(arguments.scene);
+    const Scene scene = read_scene(arguments.scene, stop_if_interrupted);
     const Field field = compile(scene);
     const Camera camera = camera_of(scene, field, default_width, default_height);
     output.write(arguments.json ? json_of(arguments.scene, scene, field, camera)

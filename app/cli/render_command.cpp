@@ -152,7 +152,7 @@ std::string summary(const RenderStatistics& statistics) {
 
 void run(const RenderArguments& arguments) {
     const Clock::time_point start = Clock::now();
-    const Scene scene = read_scene(arguments.scene);
+    const Scene scene = read_scene(arguments.scene, stop_if_interrupted);
     const double load_seconds = seconds_since(start);
     stop_if_interrupted();
     Outputs outputs(arguments);

@@ -155,7 +155,7 @@ std::vector<std::string_view> whole_lines(std::string_view& text, bool at_end) {
 
 void run(const TraceArguments& arguments) {
     constexpr std::size_t longest_line = std::size_t{1} << 20;
-    const Tracer tracer(read_scene(arguments.scene), arguments.work);
+    const Tracer tracer(read_scene(arguments.scene, stop_if_interrupted), arguments.work);
     const RayInput input(arguments.rays);
     Output output("-");
     // Answers on the same terminal are progress enough.

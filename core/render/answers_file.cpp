@@ -1,8 +1,5 @@
 #include "core/render/answers_file.h"
 
-#include <locale.h>
-#include <stdlib.h>
-
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -33,13 +30,6 @@ void append_numbers(std::string& text, const Vec3d& v) {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// from_chars calls a number that is too small out of range, as it does one that is too large.
-// strtod rounds it to the nearest double, in a locale that has a point and not a comma.
-double beyond_normal_range(const std::string& number) {
-    static const locale_t c_locale = ::newlocale(LC_ALL_MASK, "C", nullptr);
-    return ::strtod_l(number.c_str(), nullptr, c_locale);
-}
-
 double parse_number(std::string_view word) {
     std::string_view digits = word;
     const bool negative = digits.starts_with('-');
@@ -56,7 +46,7 @@ double parse_number(std::string_view word) {
         throw Error(in_quotes(word) + " is not a number; write it like 0.25, 1e-3 or 0x1p-2");
     }
     if (read.ec == std::errc::result_out_of_range) {
-        value = beyond_normal_range((hexadecimal ? "0x" : "") + std::string(digits));
+        value = rounded((hexadecimal ? "0x" : "") + std::string(digits));
     }
     if (!std::isfinite(value)) {
         throw Error(in_quotes(word) +

@@ -1,12 +1,12 @@
 #include "core/scene/json_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cstdint>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <unordered_set>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <system_error>
 #include <utility>
 
 #include "core/scene/text.h"
@@ -19,239 +19,574 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 // In well-formed UTF-8.
 bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
-// What the parser takes its bytes from. It reads through a copy, and `reached` tells how far.
-class CountingIterator {
-  public:
-    // NOLINTBEGIN(readability-identifier-naming): the standard's names
-    using iterator_category = std::input_iterator_tag;
-    using value_type = char;
-    using difference_type = std::ptrdiff_t;
-    using pointer = const char*;
-    using reference = const char&;
-    // NOLINTEND(readability-identifier-naming)
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-    CountingIterator(const char* at, const char** reached) : at_(at), reached_(reached) {}
-    reference operator*() const { return *at_; }
-    CountingIterator& operator++() {
-        *reached_ = ++at_;
-        return *this;
+bool is_plain_in_text(char c) {
+    return c != '"' && c != '\\' && static_cast<unsigned char>(c) >= 0x20;
+}
+
+unsigned hexadecimal(std::string_view digits) {
+    unsigned value = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+    return value;
+}
+
+bool is_high_surrogate(unsigned unit) { return unit >= 0xD800 && unit < 0xDC00; }
+bool is_low_surrogate(unsigned unit) { return unit >= 0xDC00 && unit < 0xE000; }
+
+void append_utf8(std::string& text, unsigned code_point) {
+    const auto append = [&](unsigned byte) { text += static_cast<char>(byte); };
+    const auto append_rest = [&](unsigned shift) { append(0x80 | (code_point >> shift & 0x3F)); };
+    if (code_point < 0x80) {
+        append(code_point);
+    } else if (code_point < 0x800) {
+        append(0xC0 | code_point >> 6);
+        append_rest(0);
+    } else if (code_point < 0x10000) {
+        append(0xE0 | code_point >> 12);
+        append_rest(6);
+        append_rest(0);
+    } else {
+        append(0xF0 | code_point >> 18);
+        append_rest(12);
+        append_rest(6);
+        append_rest(0);
     }
-    CountingIterator operator++(int) {
-        const CountingIterator before = *this;
-        ++*this;
-        return before;
-    }
-    friend bool operator==(const CountingIterator& a, const CountingIterator& b) {
-        return a.at_ == b.at_;
-    }
+}
 
-  private:
-    const char* at_;
-    const char** reached_;
-};
+// What the text whose quote stands at `offset` stands for: a part of `json`, or of `buffer` where
+// there are escapes. Of JSON that has been found right.
+std::string_view decoded(std::string_view json, std::size_t offset, std::string& buffer) {
+    const std::size_t start = offset + 1;
+    std::size_t at = start;
+    while (is_plain_in_text(json[at])) ++at;
+    if (json[at] == '"') return json.substr(start, at - start);
 
-// Builds the tree from the events of nlohmann's parser. Each event comes as soon as the last byte
-// of its token is read, one more byte for numbers (whose end shows only there).
-class TreeBuilder {
-  public:
-    TreeBuilder(const SourceText& source, const char* const& reached)
-        : source_(source),
-          reached_(reached),
-          end_of_last_(source.text().starts_with(byte_order_mark) ? byte_order_mark.size() : 0) {}
-
-    JsonValue take() { return std::move(root_); }
-
-    bool null() { return add(nullptr); }
-    bool boolean(bool value) { return add(value); }
-    bool number_integer(std::int64_t value) {
-        // Negative numbers and "-0", whose sign an integer cannot keep, come here; others do not.
-        return add(value == 0 ? -0.0 : static_cast<double>(value));
-    }
-    bool number_unsigned(std::uint64_t value) { return add(static_cast<double>(value)); }
-    bool number_float(double value, const std::string& /*as_written*/) { return add(value); }
-    bool string(std::string& value) { return add(std::move(value)); }
-    bool binary(std::vector<std::uint8_t>& /*value*/) { return false; }  // never in JSON text
-
-    bool start_object(std::size_t /*unknown_size*/) { return open(JsonValue::Object{}); }
-    bool start_array(std::size_t /*unknown_size*/) { return open(JsonValue::Array{}); }
-    bool end_object() { return close(); }
-    bool end_array() { return close(); }
-
-    bool key(std::string& text) {
-        const std::size_t offset = start_of_token();
-        token_is_read();
-        Level& level = levels_.back();
-        auto& members = std::get<JsonValue::Object>(level.value->content);
-        if (!level.keys.insert(text).second) {
-            throw source_.fault(offset, pointer_into(pointer(levels_.size() - 1), text),
-                                "the key " + in_quotes(text) +
-                                    " stands here for the second time in its object; keep one");
+    buffer.assign(json.substr(start, at - start));
+    while (json[at] != '"') {
+        if (json[at] != '\\') {
+            buffer += json[at++];
+            continue;
         }
-        members.push_back({std::move(text), offset, {}});
+        constexpr std::string_view letters = "bfnrt", meant = "\b\f\n\r\t";
+        const char escaped = json[at + 1];
+        at += 2;
+        if (escaped == 'u') {
+            unsigned code_point = hexadecimal(json.substr(at, 4));
+            at += 4;
+            if (is_high_surrogate(code_point)) {
+                const unsigned low = hexadecimal(json.substr(at + 2, 4));
+                code_point = 0x10000 + ((code_point - 0xD800) << 10) + (low - 0xDC00);
+                at += 6;
+            }
+            append_utf8(buffer, code_point);
+        } else {
+            const std::size_t letter = letters.find(escaped);
+            buffer += letter == std::string_view::npos ? escaped : meant[letter];
+        }
+    }
+    return buffer;
+}
+
+// Infinite beyond the largest double. `text` begins with a number as JSON writes it.
+double number_at(std::string_view text) {
+    double value = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc::result_out_of_range) return value;
+    return rounded(std::string(text.data(), read.ptr));
+}
+
+// The keys of one object, as offsets into its text.
+class KeySet {
+  public:
+    explicit KeySet(std::string_view json) : json_(json) {}
+
+    void clear() {
+        slots_.assign(least_slots, none);
+        count_ = 0;
+    }
+
+    // False where the key is there already. `key` is what the text at `offset` stands for.
+    bool insert(std::string_view key, std::size_t offset) {
+        if (2 * (count_ + 1) > slots_.size()) grow();
+        std::uint32_t& slot = slot_of(key);
+        if (slot != none) return false;
+        slot = static_cast<std::uint32_t>(offset);
+        ++count_;
         return true;
     }
 
-    [[noreturn]] bool parse_error(std::size_t position, const std::string& last_token,
-                                  const nlohmann::json::exception& error) {
-        constexpr int out_of_range = 406;
-        if (error.id == out_of_range) {
-            throw source_.fault(start_of_token(), pointer(levels_.size()),
-                                "the number " + in_quotes(last_token) +
-                                    " is not finite as a double; it must lie within "
-                                    "+-1.7976931348623157e308");
+  private:
+    static constexpr std::size_t least_slots = 16;  // a power of two
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    // Where the key is, or is to be put.
+    std::uint32_t& slot_of(std::string_view key) {
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t at = std::hash<std::string_view>()(key) & mask;
+        while (slots_[at] != none && decoded(json_, slots_[at], buffer_) != key) {
+            at = (at + 1) & mask;
         }
-        // The end counts as a byte read.
-        if (position > source_.text().size()) {
-            throw source_.fault(source_.text().size(), "",
-                                levels_.empty()
-                                    ? std::string("the text ends where a value should stand; it "
-                                                  "must be one JSON object")
-                                    : "the text ends inside " + innermost() +
-                                          "; close it, or restore the part that was cut off");
+        return slots_[at];
+    }
+
+    void grow() {
+        const std::vector<std::uint32_t> before = std::exchange(
+            slots_, std::vector<std::uint32_t>(std::max(2 * slots_.size(), least_slots), none));
+        std::string buffer;
+        for (const std::uint32_t offset : before) {
+            if (offset != none) slot_of(decoded(json_, offset, buffer)) = offset;
         }
-        const std::size_t offset = std::max<std::size_t>(position, 1) - 1;
-        throw source_.fault(offset, "", syntax_fault(error.what(), last_token, offset));
+    }
+
+    std::string_view json_;
+    std::vector<std::uint32_t> slots_;
+    std::size_t count_ = 0;
+    std::string buffer_;
+};
+
+// What the grammar allows next, as messages say it.
+constexpr std::string_view a_value = "'[', '{', or a literal";
+constexpr std::string_view a_key = "a key in double quotes";
+constexpr std::string_view a_colon = "':'";
+constexpr std::string_view more_of_list = "',' or ']'";
+constexpr std::string_view more_of_object = "',' or '}'";
+constexpr std::string_view the_end = "end of input";
+
+constexpr std::string_view bad_literal = "invalid literal";
+constexpr std::string_view bad_escape = "invalid string: forbidden character after backslash";
+
+// One pass from left to right that checks everything and notes where each value stands.
+class Parser {
+  public:
+    // Of a text that has no bytes below a blank but line ends and tabs.
+    Parser(const SourceText& source, std::size_t most_entries, const Stop& stop)
+        : source_(source),
+          stop_(stop),
+          at_(source.text().data()),
+          next_look_(at_),
+          end_(at_ + source.text().size()) {
+        index_.reserve(most_entries);
+        levels_.reserve(deepest_nesting);
+        if (source.text().starts_with(byte_order_mark)) at_ += byte_order_mark.size();
+        look();
+    }
+
+    std::vector<std::uint32_t> parse() {
+        skip_space();
+        value();
+        skip_space();
+        if (at_ != end_) unexpected(the_end);
+        return std::move(index_);
     }
 
   private:
     struct Level {
-        JsonValue* value;  // an array or object still open
-        std::unordered_set<std::string> keys;
+        bool is_list;
+        std::size_t count = 0;       // of the values before the one that is being read
+        std::size_t key_offset = 0;  // of its key
     };
 
-    // Between the end of one token and the start of the next stand only these. The byte read after
-    // a number is one of them too, or a bracket that closes, which starts no value.
-    std::size_t start_of_token() const {
-        const std::size_t start = source_.text().find_first_not_of(" \t\r\n,:", end_of_last_);
-        return std::min(start, source_.text().size());
+    void look() {
+        look_at(stop_);
+        next_look_ = at_ + std::min<std::ptrdiff_t>(end_ - at_, bytes_between_looks);
     }
 
-    void token_is_read() {
-        end_of_last_ = static_cast<std::size_t>(reached_ - source_.text().data());
-    }
+    // 0, which stands nowhere in the text, at the end.
+    char peek() const { return at_ == end_ ? '\0' : *at_; }
 
-    template <class Content>
-    JsonValue& place(Content&& content) {
-        JsonValue value{std::forward<Content>(content), start_of_token()};
-        token_is_read();
-        if (levels_.empty()) return root_ = std::move(value);
-        JsonValue& parent = *levels_.back().value;
-        if (auto* const array = std::get_if<JsonValue::Array>(&parent.content)) {
-            return array->emplace_back(std::move(value));
+    std::size_t offset() const { return static_cast<std::size_t>(at_ - source_.text().data()); }
+
+    template <class Wanted>
+    void skip_while(Wanted wanted) {
+        while (true) {
+            while (at_ < next_look_ && wanted(*at_)) ++at_;
+            if (at_ < next_look_ || at_ == end_) return;
+            look();
         }
-        return std::get<JsonValue::Object>(parent.content).back().value = std::move(value);
     }
 
-    template <class Content>
-    bool add(Content&& content) {
-        place(std::forward<Content>(content));
-        return true;
+    void skip_space() {
+        skip_while([](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; });
     }
 
-    template <class Content>
-    bool open(Content&& content) {
+    void add_entry() { index_.push_back(static_cast<std::uint32_t>(offset())); }
+
+    void value() {
+        switch (peek()) {
+            case '{':
+                return object();
+            case '[':
+                return list();
+            case '"':
+                add_entry();
+                return text(a_value);
+            case 't':
+                add_entry();
+                return literal("true", a_value);
+            case 'f':
+                add_entry();
+                return literal("false", a_value);
+            case 'n':
+                add_entry();
+                return literal("null", a_value);
+            default:
+                if (peek() != '-' && !is_digit(peek())) unexpected(a_value);
+                add_entry();
+                return finite_number();
+        }
+    }
+
+    void list() {
+        const std::size_t entry = open(true);
+        if (peek() != ']') {
+            while (true) {
+                value();
+                ++levels_.back().count;
+                skip_space();
+                if (peek() != ',') break;
+                ++at_;
+                skip_space();
+            }
+            if (peek() != ']') unexpected(more_of_list);
+        }
+        close(entry);
+    }
+
+    void object() {
+        const std::size_t entry = open(false);
+        if (peek() != '}') {
+            while (true) {
+                if (peek() != '"') unexpected(a_key);
+                key();
+                skip_space();
+                if (peek() != ':') unexpected(a_colon);
+                ++at_;
+                skip_space();
+                value();
+                skip_space();
+                if (peek() != ',') break;
+                ++at_;
+                skip_space();
+            }
+            if (peek() != '}') unexpected(more_of_object);
+        }
+        close(entry);
+    }
+
+    // Passes the bracket; the entry that `close` completes.
+    std::size_t open(bool is_list) {
         if (levels_.size() == deepest_nesting) {
-            throw source_.fault(start_of_token(), "",
+            throw source_.fault(offset(), "",
                                 "brackets nest deeper than " + std::to_string(deepest_nesting) +
                                     " levels; the format needs a few");
         }
-        // A container grows only while no child is open, so the pointers stay good.
-        JsonValue& value = place(std::forward<Content>(content));
-        levels_.push_back({&value, {}});
-        return true;
+        levels_.push_back({is_list});
+        if (!is_list) {
+            if (keys_.size() < levels_.size()) keys_.resize(levels_.size(), KeySet(source_.text()));
+            keys_[levels_.size() - 1].clear();
+        }
+        add_entry();
+        index_.push_back(0);
+        ++at_;
+        skip_space();
+        return index_.size() - 1;
     }
 
-    bool close() {
-        token_is_read();
+    void close(std::size_t entry) {
+        index_[entry] = static_cast<std::uint32_t>(index_.size());
         levels_.pop_back();
+        ++at_;
+    }
+
+    void key() {
+        const std::size_t start = offset();
+        add_entry();
+        text(a_key);
+        const std::string_view key = decoded(source_.text(), start, buffer_);
+        if (!keys_[levels_.size() - 1].insert(key, start)) {
+            throw source_.fault(start, pointer_into(pointer(levels_.size() - 1), key),
+                                "the key " + in_quotes(key) +
+                                    " stands here for the second time in its object; keep one");
+        }
+        levels_.back().key_offset = start;
+    }
+
+    void text(std::string_view expected) {
+        ++at_;
+        while (true) {
+            skip_while(is_plain_in_text);
+            switch (peek()) {
+                case '"':
+                    ++at_;
+                    return;
+                case '\\':
+                    ++at_;
+                    escape(expected);
+                    break;
+                case '\n':
+                    refuse("invalid string: control character U+000A (LF) must be escaped to "
+                           "\\u000A or \\n",
+                           expected);
+                case '\r':
+                    refuse("invalid string: control character U+000D (CR) must be escaped to "
+                           "\\u000D or \\r",
+                           expected);
+                case '\t':
+                    refuse("invalid string: control character U+0009 (HT) must be escaped to "
+                           "\\u0009 or \\t",
+                           expected);
+                default:
+                    refuse_end();
+            }
+        }
+    }
+
+    void escape(std::string_view expected) {
+        constexpr std::string_view letters = "\"\\/bfnrt";
+        if (at_ != end_ && letters.find(*at_) != std::string_view::npos) {
+            ++at_;
+            return;
+        }
+        if (peek() != 'u') refuse(bad_escape, expected);
+        ++at_;
+        const unsigned unit = four_digits(expected);
+        if (is_high_surrogate(unit)) {
+            constexpr std::string_view alone =
+                "invalid string: surrogate U+D800..U+DBFF must be followed by U+DC00..U+DFFF";
+            for (const char c : {'\\', 'u'}) {
+                if (peek() != c) refuse(alone, expected);
+                ++at_;
+            }
+            if (!is_low_surrogate(four_digits(expected))) refuse_last(alone, expected);
+        } else if (is_low_surrogate(unit)) {
+            refuse_last("invalid string: surrogate U+DC00..U+DFFF must follow U+D800..U+DBFF",
+                        expected);
+        }
+    }
+
+    unsigned four_digits(std::string_view expected) {
+        const std::size_t start = offset();
+        for (int i = 0; i < 4; ++i) {
+            const char c = peek();
+            if (!is_digit(c) && !(c >= 'a' && c <= 'f') && !(c >= 'A' && c <= 'F')) {
+                refuse("invalid string: '\\u' must be followed by 4 hex digits", expected);
+            }
+            ++at_;
+        }
+        return hexadecimal(source_.text().substr(start, 4));
+    }
+
+    void literal(std::string_view word, std::string_view expected) {
+        for (const char c : word) {
+            if (peek() != c) refuse(bad_literal, expected);
+            ++at_;
+        }
+    }
+
+    void finite_number() {
+        const std::size_t start = offset();
+        if (!number(a_value)) return;
+        const std::string_view written = source_.text().substr(start, offset() - start);
+        if (std::isfinite(number_at(written))) return;
+        throw source_.fault(start, pointer(levels_.size()),
+                            "the number " + in_quotes(written) +
+                                " is not finite as a double; it must lie within "
+                                "+-1.7976931348623157e308");
+    }
+
+    // Whether it may be larger than the largest double.
+    bool number(std::string_view expected) {
+        constexpr std::ptrdiff_t most_harmless_digits = 308;
+        const char* const start = at_;
+        if (*at_ == '-') ++at_;
+        if (peek() == '0') {
+            ++at_;
+        } else {
+            digits("invalid number; expected digit after '-'", expected);
+        }
+        const bool is_long = at_ - start > most_harmless_digits;
+        if (peek() == '.') {
+            ++at_;
+            digits("invalid number; expected digit after '.'", expected);
+        }
+        if (peek() != 'e' && peek() != 'E') return is_long;
+        ++at_;
+        if (peek() == '+' || peek() == '-') {
+            ++at_;
+            digits("invalid number; expected digit after exponent sign", expected);
+        } else {
+            digits("invalid number; expected '+', '-', or digit after exponent", expected);
+        }
         return true;
     }
 
-    // Of the value that the outermost `count` open levels lead to; where all of them are taken, of
-    // the one that is about to be added.
+    // One at least.
+    void digits(std::string_view without, std::string_view expected) {
+        if (!is_digit(peek())) refuse(without, expected);
+        skip_while(is_digit);
+    }
+
+    // What stands here is not what the grammar allows.
+    [[noreturn]] void unexpected(std::string_view expected) {
+        std::string name;
+        const char c = peek();
+        if (c == '"') {
+            text(expected);
+            name = "string literal";
+        } else if (c == '-' || is_digit(c)) {
+            number(expected);
+            name = "number literal";
+        } else if (c == 't' || c == 'f' || c == 'n') {
+            const std::string word = c == 't' ? "true" : c == 'f' ? "false" : "null";
+            literal(word, expected);
+            name = word + " literal";
+        } else if (c == '[' || c == ']' || c == '{' || c == '}' || c == ':' || c == ',') {
+            ++at_;
+            name = {'\'', c, '\''};
+        } else {
+            refuse(bad_literal, expected);
+        }
+        --at_;
+        throw syntax_fault("unexpected " + name + "; expected " + std::string(expected));
+    }
+
+    // The byte here makes no sense.
+    [[noreturn]] void refuse(std::string_view what, std::string_view expected) {
+        if (at_ == end_) refuse_end();
+        const std::string_view rest = source_.text().substr(offset());
+        std::size_t bytes = 1;
+        while (bytes < rest.size() && !starts_character(rest[bytes])) ++bytes;
+        std::string message = std::string(what) + " at " + in_quotes(rest.substr(0, bytes));
+        // Text or a number that is wrong in itself may well be the kind of value that is expected.
+        if (expected != a_value || what == bad_literal) {
+            message += "; expected " + std::string(expected);
+        }
+        if (what == bad_escape) message += R"(; expected one of " \ / b f n r t u)";
+        throw syntax_fault(message);
+    }
+
+    // The byte before makes no sense.
+    [[noreturn]] void refuse_last(std::string_view what, std::string_view expected) {
+        --at_;
+        refuse(what, expected);
+    }
+
+    [[noreturn]] void refuse_end() {
+        throw source_.fault(source_.text().size(), "",
+                            levels_.empty()
+                                ? std::string("the text ends where a value should stand; it must "
+                                              "be one JSON object")
+                                : "the text ends inside " + innermost() +
+                                      "; close it, or restore the part that was cut off");
+    }
+
+    Error syntax_fault(const std::string& what) const {
+        return source_.fault(offset(), "", "not JSON: " + what);
+    }
+
+    // Of the value that the outermost `count` open levels lead to.
     std::string pointer(std::size_t count) const {
-        std::string path;
+        std::string path, buffer;
         for (std::size_t i = 0; i < count; ++i) {
-            const bool is_being_added = i + 1 == levels_.size();
-            if (const auto* const array =
-                    std::get_if<JsonValue::Array>(&levels_[i].value->content)) {
-                path += "/" + std::to_string(array->size() - (is_being_added ? 0 : 1));
-            } else {
-                path = pointer_into(
-                    path, std::get<JsonValue::Object>(levels_[i].value->content).back().key);
-            }
+            path = levels_[i].is_list
+                       ? path + "/" + std::to_string(levels_[i].count)
+                       : pointer_into(path, decoded(source_.text(), levels_[i].key_offset, buffer));
         }
         return path;
     }
 
     std::string innermost() const {
-        const bool is_array =
-            std::holds_alternative<JsonValue::Array>(levels_.back().value->content);
         const std::string path = pointer(levels_.size() - 1);
-        return (is_array ? "the list " : "the object ") +
+        return (levels_.back().is_list ? "the list " : "the object ") +
                (path.empty() ? std::string("of the top level") : printable(path, 200));
     }
 
-    // The parser's own words are "[json.exception...] parse error at line 1, column 2: syntax error
-    // while parsing value - FAULT; last read: 'TOKEN'; expected REMEDY", where a fault may be
-    // "unexpected ...", without a token, and the remedy may be missing.
-    std::string syntax_fault(std::string what, const std::string& token, std::size_t offset) const {
-        for (const std::string_view before : {"syntax error ", " - "}) {
-            const std::size_t at = what.find(before);
-            if (at != std::string::npos) what.erase(0, at + before.size());
-        }
-        const std::string last_read = "; last read: '" + token + "'";
-        const std::size_t at = what.find(last_read);
-        if (at != std::string::npos) {
-            what.replace(at, last_read.size(), " at " + in_quotes(character_at(offset)));
-        }
-        const std::string key_expected = "; expected string literal";
-        if (what.ends_with(key_expected)) {
-            what.replace(what.size() - key_expected.size(), key_expected.size(),
-                         "; expected a key in double quotes");
-        } else if (what.ends_with("; expected ']'") || what.ends_with("; expected '}'")) {
-            what.insert(what.size() - 3, "',' or ");  // the parser names one of the two
-        } else if (what.starts_with("invalid literal") &&
-                   what.find("; expected") == std::string::npos) {
-            what += "; expected '[', '{', or a literal";
-        } else if (what.find("after backslash") != std::string::npos) {
-            what += R"(; expected one of " \ / b f n r t u)";
-        }
-        return "not JSON: " + printable(what, 200);
-    }
-
-    std::string_view character_at(std::size_t offset) const {
-        const std::string_view text = source_.text();
-        std::size_t end = offset + 1;
-        while (end < text.size() && !starts_character(text[end])) ++end;
-        return text.substr(offset, end - offset);
-    }
-
     const SourceText& source_;
-    const char* const& reached_;
-    std::size_t end_of_last_;
-    JsonValue root_;
+    const Stop& stop_;
+    const char* at_;
+    const char* next_look_;
+    const char* end_;
+    std::vector<std::uint32_t> index_;
     std::vector<Level> levels_;
+    std::vector<KeySet> keys_;  // one for each level, kept for the next object there
+    std::string buffer_;
 };
 
-// The parser would take a zero byte for the end.
-void refuse_bytes_of_no_text(const SourceText& source) {
-    const std::string_view text = source.text();
-    if (const std::optional<std::size_t> at = first_invalid_utf8(text)) {
-        throw source.fault(*at, "",
-                           "the byte " + printable(text.substr(*at, 1)) +
-                               " is not valid UTF-8; save the file as UTF-8 text");
+struct Survey {
+    bool plain = true;        // all characters are ASCII, none a control but line ends and tabs
+    std::size_t entries = 0;  // at most so many has the text's index
+};
+
+// Each value but the first stands behind one of [ , : and each key behind one of { and , ; lists
+// and objects have two entries. Blocks without branches, which compilers turn into vectors.
+Survey survey(std::string_view text) {
+    constexpr std::size_t block = 64;
+    Survey survey;
+    for (std::size_t start = 0; start < text.size(); start += block) {
+        unsigned char odd = 0, entries = 0;
+        const auto count = [&](char c) {
+            const auto byte = static_cast<unsigned char>(c);
+            const bool control = byte < 0x20 && c != '\n' && c != '\t' && c != '\r';
+            odd = static_cast<unsigned char>(odd | (byte & 0x80) | (control ? 1 : 0));
+            entries = static_cast<unsigned char>(entries + (c == ',' ? 1 : 0) + (c == ':' ? 1 : 0) +
+                                                 (c == '[' ? 2 : 0) + (c == '{' ? 2 : 0));
+        };
+        if (text.size() - start >= block) {
+            for (std::size_t i = 0; i < block; ++i) count(text[start + i]);
+        } else {
+            for (const char c : text.substr(start)) count(c);
+        }
+        survey.plain = survey.plain && odd == 0;
+        survey.entries += entries;
     }
-    const auto is_control = [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
-    };
-    const auto control = std::find_if(text.begin(), text.end(), is_control);
-    if (control != text.end()) {
-        throw source.fault(static_cast<std::size_t>(control - text.begin()), "",
-                           "the control character " + printable({&*control, 1}) +
+    return survey;
+}
+
+// Where the piece of the text that begins at `start` ends: between two characters.
+std::size_t end_of_piece(std::string_view text, std::size_t start) {
+    if (text.size() - start <= bytes_between_looks) return text.size();
+    const std::size_t end = start + bytes_between_looks;
+    for (std::size_t back = 0; back < 4; ++back) {
+        if (starts_character(text[end - back])) return end - back;
+    }
+    return end;  // behind four bytes of which none starts a character: one that is complete or wrong
+}
+
+// The most entries that the text's index can have. Refuses bytes that stand in no text.
+std::size_t survey_and_refuse(const SourceText& source, const Stop& stop) {
+    const std::string_view text = source.text();
+    std::size_t entries = 1;
+    std::optional<std::size_t> control;
+    for (std::size_t start = 0; start < text.size();) {
+        look_at(stop);
+        const std::size_t end = end_of_piece(text, start);
+        const std::string_view piece = text.substr(start, end - start);
+        const Survey found = survey(piece);
+        entries += found.entries;
+        if (!found.plain) {
+            if (const std::optional<std::size_t> at = first_invalid_utf8(piece)) {
+                throw source.fault(start + *at, "",
+                                   "the byte " + printable(piece.substr(*at, 1)) +
+                                       " is not valid UTF-8; save the file as UTF-8 text");
+            }
+            const auto is_control = [](char c) {
+                return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
+            };
+            const auto at = std::find_if(piece.begin(), piece.end(), is_control);
+            if (!control && at != piece.end()) {
+                control = start + static_cast<std::size_t>(at - piece.begin());
+            }
+        }
+        start = end;
+    }
+    if (control) {
+        throw source.fault(*control, "",
+                           "the control character " + printable(text.substr(*control, 1)) +
                                " cannot stand in JSON; remove it, or write it as \\u00.. within "
                                "quotes");
     }
+    return entries;
 }
 
 }  // namespace
@@ -277,50 +612,95 @@ Error SourceText::fault(std::size_t offset, std::string_view pointer,
         ": " + std::string(message));
 }
 
+JsonKind JsonValue::kind() const {
+    switch (first()) {
+        case '{':
+            return JsonKind::object;
+        case '[':
+            return JsonKind::list;
+        case '"':
+            return JsonKind::text;
+        case 't':
+        case 'f':
+            return JsonKind::boolean;
+        case 'n':
+            return JsonKind::null;
+        default:
+            return JsonKind::number;
+    }
+}
+
+bool JsonValue::boolean() const { return first() == 't'; }
+
+double JsonValue::number() const { return number_at(document_->text().substr(offset())); }
+
+std::string JsonValue::text() const {
+    std::string buffer;
+    return std::string(decoded(document_->text(), offset(), buffer));
+}
+
+bool JsonValue::is_text(std::string_view text) const {
+    std::string buffer;
+    return decoded(document_->text(), offset(), buffer) == text;
+}
+
+JsonRange<JsonValue> JsonValue::items() const { return {*document_, entry_ + 2, end()}; }
+
+JsonRange<JsonMember> JsonValue::members() const { return {*document_, entry_ + 2, end()}; }
+
 std::string JsonValue::description() const {
-    struct Describe {
-        std::string operator()(std::nullptr_t) const { return "null"; }
-        std::string operator()(bool value) const { return value ? "true" : "false"; }
-        std::string operator()(double value) const { return number_text(value); }
-        std::string operator()(const std::string& value) const {
-            return "the text " + in_quotes(value);
-        }
-        std::string operator()(const Array& items) const {
-            return items.empty()       ? "an empty list"
-                   : items.size() == 1 ? "a list of 1 value"
-                                       : "a list of " + std::to_string(items.size()) + " values";
-        }
-        std::string operator()(const Object&) const { return "an object"; }
-    };
-    return std::visit(Describe{}, content);
+    switch (kind()) {
+        case JsonKind::null:
+            return "null";
+        case JsonKind::boolean:
+            return boolean() ? "true" : "false";
+        case JsonKind::number:
+            return number_text(number());
+        case JsonKind::text:
+            return "the text " + in_quotes(text());
+        case JsonKind::object:
+            return "an object";
+        case JsonKind::list:
+            break;
+    }
+    const std::size_t count = items().size();
+    return count == 0   ? "an empty list"
+           : count == 1 ? "a list of 1 value"
+                        : "a list of " + std::to_string(count) + " values";
 }
 
-const JsonValue* find_member(const JsonValue::Object& object, std::string_view key) {
-    const auto member = std::find_if(object.begin(), object.end(),
-                                     [&](const JsonMember& m) { return m.key == key; });
-    return member == object.end() ? nullptr : &member->value;
+std::optional<JsonValue> find_member(const JsonValue& object, std::string_view key) {
+    for (const JsonMember member : object.members()) {
+        if (member.key.is_text(key)) return member.value;
+    }
+    return std::nullopt;
 }
 
-const JsonValue& nearest_to(const JsonValue& root, std::string_view pointer) {
-    const JsonValue* value = &root;
+JsonValue nearest_to(const JsonValue& root, std::string_view pointer) {
+    JsonValue value = root;
     while (!pointer.empty()) {
         pointer.remove_prefix(1);  // the slash
         const std::string_view escaped = pointer.substr(0, pointer.find('/'));
         pointer.remove_prefix(escaped.size());
-        const JsonValue* next = nullptr;
-        if (const auto* const object = std::get_if<JsonValue::Object>(&value->content)) {
-            for (const JsonMember& member : *object) {
-                if (pointer_into("", member.key).substr(1) == escaped) next = &member.value;
+        std::optional<JsonValue> next;
+        if (value.kind() == JsonKind::object) {
+            for (const JsonMember member : value.members()) {
+                if (pointer_into("", member.key.text()).substr(1) == escaped) next = member.value;
             }
-        } else if (const auto* const array = std::get_if<JsonValue::Array>(&value->content)) {
-            std::size_t index = array->size();
+        } else if (value.kind() == JsonKind::list) {
+            std::size_t index = std::numeric_limits<std::size_t>::max();
             std::from_chars(escaped.data(), escaped.data() + escaped.size(), index);
-            if (index < array->size()) next = &(*array)[index];
+            for (const JsonValue item : value.items()) {
+                if (index-- == 0) {
+                    next = item;
+                    break;
+                }
+            }
         }
-        if (next == nullptr) break;
-        value = next;
+        if (!next) break;
+        value = *next;
     }
-    return *value;
+    return value;
 }
 
 std::string pointer_into(std::string_view pointer, std::string_view key) {
@@ -338,14 +718,13 @@ std::string pointer_into(std::string_view pointer, std::string_view key) {
     return path;
 }
 
-JsonValue parse_json(const SourceText& source) {
-    refuse_bytes_of_no_text(source);
-    const std::string_view text = source.text();
-    const char* reached = text.data();
-    TreeBuilder builder(source, reached);
-    nlohmann::json::sax_parse(CountingIterator(text.data(), &reached),
-                              CountingIterator(text.data() + text.size(), &reached), &builder);
-    return builder.take();
+JsonDocument parse_json(const SourceText& source, const Stop& stop) {
+    constexpr std::size_t most_bytes = std::numeric_limits<std::uint32_t>::max();
+    if (source.text().size() >= most_bytes) {
+        throw source.fault(0, "", "the text has 4 GiB or more; a scene must be smaller");
+    }
+    const std::size_t most_entries = survey_and_refuse(source, stop);
+    return {source.text(), Parser(source, most_entries, stop).parse()};
 }
 
 }  // namespace ivory

@@ -1,6 +1,7 @@
 #include "core/scene/read_file.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <system_error>
@@ -28,21 +29,32 @@ std::string file_label(const std::filesystem::path& path) {
     return path.empty() ? "\"\"" : printable(path.string());
 }
 
-std::string read_file(const std::filesystem::path& path) {
+std::string read_file(const std::filesystem::path& path, const Stop& stop) {
     struct Close {
         void operator()(std::FILE* file) const {
             if (file != stdin) std::fclose(file);
         }
     };
-    errno = 0;
-    const std::unique_ptr<std::FILE, Close> file(path == "-" ? stdin
-                                                             : std::fopen(path.c_str(), "rb"));
-    if (!file) throw cannot_be_read(path, errno);
+    std::unique_ptr<std::FILE, Close> file(path == "-" ? stdin : nullptr);
+    while (!file) {
+        errno = 0;
+        file.reset(std::fopen(path.c_str(), "rb"));
+        if (file) break;
+        if (errno != EINTR) throw cannot_be_read(path, errno);
+        look_at(stop);
+    }
 
     // In pieces up to the end, not by the size that the system says: a pipe has none.
     std::string bytes;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(path, ignored)) {
+        const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+        if (!ignored && size <= largest_file) bytes.reserve(size);
+    }
     std::vector<char> piece(std::size_t{1} << 16);
+    static_assert(bytes_between_looks >= std::size_t{1} << 16);
     while (true) {
+        look_at(stop);
         errno = 0;
         const std::size_t count = std::fread(piece.data(), 1, piece.size(), file.get());
         bytes.append(piece.data(), count);
@@ -51,10 +63,10 @@ std::string read_file(const std::filesystem::path& path) {
                         std::to_string(largest_file >> 20) +
                         " MiB, the most that is read; name a smaller file");
         }
-        if (count < piece.size()) {
-            if (std::ferror(file.get()) != 0) throw cannot_be_read(path, errno);
-            return bytes;
-        }
+        if (count == piece.size()) continue;
+        if (std::ferror(file.get()) == 0) return bytes;
+        if (errno != EINTR) throw cannot_be_read(path, errno);
+        std::clearerr(file.get());
     }
 }
 

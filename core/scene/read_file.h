@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/scene/stop.h"
+
 namespace ivory {
 
 // Larger than any file that a person or a program would hand us on purpose; keeps a mistyped
@@ -15,6 +17,7 @@ inline constexpr std::size_t largest_file = std::size_t{256} << 20;  // bytes
 [[nodiscard]] std::string file_label(const std::filesystem::path& path);
 
 // Throws Error where the file is missing, a directory, not readable, or larger than `largest_file`.
-[[nodiscard]] std::string read_file(const std::filesystem::path& path);
+// Looks at `stop` at least once in `bytes_between_looks`, and where a signal ends a wait for bytes.
+[[nodiscard]] std::string read_file(const std::filesystem::path& path, const Stop& stop = {});
 
 }  // namespace ivory

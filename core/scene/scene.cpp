@@ -1,7 +1,7 @@
 #include "core/scene/scene.h"
 
 #include <array>
-#include <cstddef>
+#include <utility>
 
 namespace ivory {
 
@@ -24,16 +24,18 @@ const char* kernel_word(KernelKind kernel) {
     return "";
 }
 
+std::string DefaultNames::next(const Skeleton& skeleton) {
+    const std::size_t number = ++count_[skeleton.index()];
+    return shape_word(skeleton) + (" " + std::to_string(number));
+}
+
 std::vector<std::string> element_names(const Scene& scene) {
     std::vector<std::string> names;
     names.reserve(scene.elements.size());
-    std::array<std::size_t, std::variant_size_v<Skeleton>> count{};
+    DefaultNames defaults;
     for (const Element& element : scene.elements) {
-        // Named elements count too, so that naming one does not rename those after it.
-        const std::size_t number = ++count[element.skeleton.index()];
-        names.push_back(element.name
-                            ? *element.name
-                            : shape_word(element.skeleton) + (" " + std::to_string(number)));
+        std::string by_default = defaults.next(element.skeleton);
+        names.push_back(element.name ? *element.name : std::move(by_default));
     }
     return names;
 }

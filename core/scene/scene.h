@@ -1,6 +1,8 @@
 // A scene as its file says it: plain data, an immutable value to everything downstream.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -76,8 +78,19 @@ struct Scene {
 [[nodiscard]] const char* shape_word(const Skeleton& skeleton);
 [[nodiscard]] const char* kernel_word(KernelKind kernel);
 
-// One name per element, in file order: the written one, or shape and number among its shape
-// ("point 1", "segment 2").
+// The names that elements have without a written one, told in file order: shape and number among
+// its shape ("point 1", "segment 2"). Named elements count too, so that naming one does not rename
+// those after it.
+class DefaultNames {
+  public:
+    // Of the next element.
+    [[nodiscard]] std::string next(const Skeleton& skeleton);
+
+  private:
+    std::array<std::size_t, std::variant_size_v<Skeleton>> count_{};
+};
+
+// One name per element, in file order: the written one or the default.
 [[nodiscard]] std::vector<std::string> element_names(const Scene& scene);
 
 // One head light along the view and one key light from the upper left, both attached to the camera.

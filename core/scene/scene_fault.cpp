@@ -1,11 +1,14 @@
 #include "core/scene/scene_fault.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <limits>
 #include <string_view>
-#include <unordered_map>
 #include <variant>
+#include <vector>
 
 #include "core/scene/text.h"
 
@@ -83,25 +86,80 @@ SceneFault within(const std::string& part, SceneFault fault) {
 
 std::string element_pointer(std::size_t i) { return "/elements/" + std::to_string(i); }
 
-// Defaults count as names: whoever says "point 2" means one element.
-Fault unless_names_are_unique(const Scene& scene) {
-    const std::vector<std::string> names = element_names(scene);
-    std::unordered_map<std::string_view, std::size_t> first_with;
-    first_with.reserve(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto [entry, is_new] = first_with.try_emplace(names[i], i);
-        if (is_new) continue;
-        // Two defaults never agree, so at least one of the two names is written.
-        const bool later_is_written = scene.elements[i].name.has_value();
-        const std::size_t culprit = later_is_written ? i : entry->second;
-        const std::size_t other = later_is_written ? entry->second : i;
-        return SceneFault{element_pointer(culprit) + "/name",
-                          "the name " + in_quotes(names[i]) + " is also that of " +
-                              element_pointer(other) +
-                              (scene.elements[other].name ? "" : " (its default name)") +
-                              "; each element must have a name of its own"};
+// The written names of a scene's first elements and whose each is.
+class WrittenNames {
+  public:
+    explicit WrittenNames(const std::vector<Element>& elements)
+        : elements_(elements), slots_(std::bit_ceil(2 * elements.size() + 1), none) {}
+
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+    // Whose the name is, or `none`.
+    std::size_t owner(std::string_view name) const { return slots_[slot_of(name)]; }
+
+    // Adds a written name that is nobody's yet.
+    void add(std::size_t element) { slots_[slot_of(*elements_[element].name)] = element; }
+
+  private:
+    // Where the name is, or is to be put.
+    std::size_t slot_of(std::string_view name) const {
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t at = std::hash<std::string_view>()(name) & mask;
+        while (slots_[at] != none && *elements_[slots_[at]].name != name) at = (at + 1) & mask;
+        return at;
     }
-    return std::nullopt;
+
+    const std::vector<Element>& elements_;
+    std::vector<std::size_t> slots_;
+};
+
+// Two elements of one name.
+struct Namesakes {
+    std::size_t later, earlier;
+};
+
+// Those whose later one comes first. Defaults count as names: whoever says "point 2" means one
+// element. But two defaults never agree.
+std::optional<Namesakes> first_namesakes(const std::vector<Element>& elements, const Stop& stop) {
+    const auto is_named = [](const Element& element) { return element.name.has_value(); };
+    if (std::none_of(elements.begin(), elements.end(), is_named)) return std::nullopt;
+
+    std::optional<Namesakes> found;
+    WrittenNames written(elements);
+    for (std::size_t i = 0; i < elements.size() && !found; ++i) {
+        if (i % values_between_looks == 0) look_at(stop);
+        if (!is_named(elements[i])) continue;
+        const std::size_t owner = written.owner(*elements[i].name);
+        if (owner == WrittenNames::none) {
+            written.add(i);
+        } else {
+            found = {i, owner};
+        }
+    }
+    DefaultNames defaults;
+    for (std::size_t i = 0; i < elements.size() && !(found && found->later < i); ++i) {
+        if (i % values_between_looks == 0) look_at(stop);
+        const std::string by_default = defaults.next(elements[i].skeleton);
+        if (is_named(elements[i])) continue;
+        const std::size_t owner = written.owner(by_default);
+        if (owner == WrittenNames::none) continue;
+        const Namesakes namesakes{std::max(i, owner), std::min(i, owner)};
+        if (!found || namesakes.later < found->later) found = namesakes;
+    }
+    return found;
+}
+
+Fault unless_names_are_unique(const std::vector<Element>& elements, const Stop& stop) {
+    const std::optional<Namesakes> found = first_namesakes(elements, stop);
+    if (!found) return std::nullopt;
+    const bool later_is_written = elements[found->later].name.has_value();
+    const std::size_t culprit = later_is_written ? found->later : found->earlier;
+    const std::size_t other = later_is_written ? found->earlier : found->later;
+    return SceneFault{element_pointer(culprit) + "/name",
+                      "the name " + in_quotes(*elements[culprit].name) + " is also that of " +
+                          element_pointer(other) +
+                          (elements[other].name ? "" : " (its default name)") +
+                          "; each element must have a name of its own"};
 }
 
 // v times a power of two, so that its largest component lies in [1/2, 1): exact but for components
@@ -184,7 +242,7 @@ std::optional<SceneFault> find_fault(const Element& element) {
     return std::nullopt;
 }
 
-std::optional<SceneFault> find_fault(const Scene& scene) {
+std::optional<SceneFault> find_fault(const Scene& scene, const Stop& stop) {
     if (!(scene.threshold > 0 && std::isfinite(scene.threshold))) {
         return wrong("/threshold", "the threshold", scene.threshold, "greater than 0, and finite");
     }
@@ -200,11 +258,12 @@ std::optional<SceneFault> find_fault(const Scene& scene) {
         }
     }
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
+        if (i % values_between_looks == 0) look_at(stop);
         if (Fault fault = find_fault(scene.elements[i])) {
             return within(element_pointer(i), *fault);
         }
     }
-    return unless_names_are_unique(scene);
+    return unless_names_are_unique(scene.elements, stop);
 }
 
 }  // namespace ivory

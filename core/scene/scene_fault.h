@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
+#include "core/scene/stop.h"
 
 namespace ivory {
 
@@ -15,8 +16,8 @@ struct SceneFault {
 };
 
 // The first fault in the order of the format's keys, names last; nothing for a scene that may be
-// rendered and written.
-[[nodiscard]] std::optional<SceneFault> find_fault(const Scene& scene);
+// rendered and written. Looks at `stop` at least once in `values_between_looks` elements.
+[[nodiscard]] std::optional<SceneFault> find_fault(const Scene& scene, const Stop& stop = {});
 
 // Faults of one part, their pointers relative to it ("/radius"): for an editor that checks what it
 // is about to change.

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/scene/json_reader.h"
 #include "core/scene/read_file.h"
 #include "core/scene/scene_fault.h"
+#include "core/scene/skeleton_members.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -16,228 +21,304 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
+template <std::size_t A, std::size_t B>
+constexpr std::array<std::string_view, A + B> joined(const std::array<std::string_view, A>& a,
+                                                     const std::array<std::string_view, B>& b) {
+    std::array<std::string_view, A + B> all;
+    std::copy(b.begin(), b.end(), std::copy(a.begin(), a.end(), all.begin()));
+    return all;
+}
+
 constexpr std::array<std::string_view, 6> scene_keys{"ivory",  "threshold", "background",
                                                      "camera", "lights",    "elements"};
+constexpr std::array<std::string_view, 3> scene_needs{"ivory", "threshold", "elements"};
 constexpr std::array<std::string_view, 4> camera_keys{"position", "target", "up", "fov"};
 constexpr std::array<std::string_view, 4> light_keys{"direction", "color", "intensity", "attached"};
 constexpr std::array<std::string_view, 7> element_keys{"shape",    "name",  "color",  "kernel",
                                                        "strength", "width", "visible"};
-constexpr std::array<std::string_view, 1> point_keys{"position"};
-constexpr std::array<std::string_view, 2> segment_keys{"a", "b"};
-constexpr std::array<std::string_view, 3> circle_keys{"center", "normal", "radius"};
+template <class Shape>
+constexpr auto keys_of_element = joined(skeleton_keys<Shape>, element_keys);
 
-constexpr std::array<std::string_view, 3> built_shapes{"point", "segment", "circle"};
+// Those of the format; the first ones, in the order of the alternatives of `Skeleton`, are built.
 constexpr std::array<std::string_view, 6> shapes{"point", "segment", "circle",
                                                  "disc",  "polygon", "curve"};
+constexpr std::size_t built_shapes = std::variant_size_v<Skeleton>;
 constexpr std::array<std::string_view, 3> kernels{"blinn", "nishimura", "wyvill"};
 constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
-bool contains(Words words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
+// The kinds of objects that a scene is made of.
+struct ObjectFormat {
+    std::string_view name;   // "a scene"
+    Words keys;              // all that it may have
+    Words needs;             // those that it must have
+};
 
-// A value of the tree and the way to it, which becomes a JSON pointer only in a message. Lives on
-// the stack, above the nodes that it came through.
-struct Node {
+constexpr ObjectFormat scene_format{"a scene", scene_keys, scene_needs};
+constexpr ObjectFormat camera_format{"a camera", camera_keys, Words(camera_keys).first(2)};
+constexpr ObjectFormat light_format{"a light", light_keys, Words(light_keys).first(1)};
+// Of an element whose shape is not known yet.
+constexpr ObjectFormat element_format{"an element", element_keys, Words(element_keys).first(1)};
+
+// Looks at a `Stop` once in so many steps.
+class Steps {
+  public:
+    explicit Steps(const Stop& stop) : stop_(stop) {}
+    void take_one() {
+        if (++count_ % values_between_looks == 0) look_at(stop_);
+    }
+
+  private:
+    const Stop& stop_;
+    std::size_t count_ = 0;
+};
+
+// What the nodes of a scene have in common.
+struct Reading {
     const SourceText& source;
-    const JsonValue& value;
+    Steps steps;
+};
+
+// A value of the document and the way to it, which becomes a JSON pointer only in a message. Lives
+// on the stack, above the nodes that it came through.
+struct Node {
+    Reading& reading;
+    JsonValue value;
     const Node* parent = nullptr;
     std::string_view key = {};  // in an object
     std::size_t index = 0;      // in a list
 
     std::string pointer() const {
         if (parent == nullptr) return "";
-        return parent->holds<JsonValue::Object>() ? pointer_into(parent->pointer(), key)
-                                                  : parent->pointer() + "/" + std::to_string(index);
+        return parent->value.kind() == JsonKind::object
+                   ? pointer_into(parent->pointer(), key)
+                   : parent->pointer() + "/" + std::to_string(index);
     }
 
     Error fault(const std::string& message) const {
-        return source.fault(value.offset, pointer(), message);
+        return reading.source.fault(value.offset(), pointer(), message);
     }
 
     Error wrong_kind(std::string_view expected) const {
         return fault(value.description() + " stands here; it must be " + std::string(expected));
     }
 
-    template <class Content>
-    bool holds() const {
-        return std::holds_alternative<Content>(value.content);
+    void must_be(JsonKind kind, std::string_view expected) const {
+        if (value.kind() != kind) throw wrong_kind(expected);
     }
 
-    template <class Content>
-    const Content& as(std::string_view expected) const {
-        if (const auto* const content = std::get_if<Content>(&value.content)) return *content;
-        throw wrong_kind(expected);
+    // Of an object.
+    Node required(std::string_view name, const ObjectFormat& format) const {
+        const std::optional<JsonValue> member = find_member(value, name);
+        if (!member) throw missing(name, format);
+        return {reading, *member, this, name};
     }
 
-    Node item(std::size_t i) const {
-        return {source, std::get<JsonValue::Array>(value.content)[i], this, {}, i};
-    }
-
-    // Of a node that is known to be an object.
-    std::optional<Node> optional(std::string_view name) const {
-        const JsonValue* const member =
-            find_member(std::get<JsonValue::Object>(value.content), name);
-        if (member == nullptr) return std::nullopt;
-        return Node{source, *member, this, name};
-    }
-
-    Node required(std::string_view name, std::string_view owner, Words needed) const {
-        if (std::optional<Node> member = optional(name)) return *member;
-        throw fault("the key " + in_quotes(name) + " is missing; " + std::string(owner) +
-                    " needs " + listed(needed));
-    }
-
-    // `owner` has the keys of both lists and no others.
-    void refuse_unknown_keys(std::string_view owner, Words first, Words second = {}) const {
-        for (const JsonMember& member : std::get<JsonValue::Object>(value.content)) {
-            if (contains(first, member.key) || contains(second, member.key)) continue;
-            std::vector<std::string_view> known(first.begin(), first.end());
-            known.insert(known.end(), second.begin(), second.end());
-            const std::optional<std::string_view> meant = nearest_word(member.key, known);
-            throw source.fault(member.offset, pointer_into(pointer(), member.key),
-                               std::string(owner) + " has no key " + in_quotes(member.key) + "; " +
-                                   (meant ? "did you mean " + in_quotes(*meant) + "? " : "") +
-                                   "it may have " + listed(known));
-        }
+    Error missing(std::string_view name, const ObjectFormat& format) const {
+        return fault("the key " + in_quotes(name) + " is missing; " + std::string(format.name) +
+                     " needs " + listed(format.needs));
     }
 };
 
-double number(const Node& node) { return node.as<double>("a number"); }
+// The members of an object, found in one walk. Refuses keys that the format does not know.
+class Members {
+  public:
+    Members(const Node& object, const ObjectFormat& format) : object_(object), format_(format) {
+        for (const JsonMember member : object.value.members()) {
+            object.reading.steps.take_one();
+            const std::string key = member.key.text();
+            const std::size_t place = place_of(key);
+            if (place == format.keys.size()) throw unknown_key(member.key.offset(), key);
+            values_[place] = member.value;
+        }
+    }
+
+    std::optional<Node> optional(std::string_view key) const {
+        const std::optional<JsonValue>& value = values_[place_of(key)];
+        if (!value) return std::nullopt;
+        return Node{object_.reading, *value, &object_, key};
+    }
+
+    Node required(std::string_view key) const {
+        if (const std::optional<Node> member = optional(key)) return *member;
+        throw object_.missing(key, format_);
+    }
+
+  private:
+    static constexpr std::size_t most_keys = 16;
+
+    std::size_t place_of(std::string_view key) const {
+        const auto place = std::find(format_.keys.begin(), format_.keys.end(), key);
+        return static_cast<std::size_t>(place - format_.keys.begin());
+    }
+
+    Error unknown_key(std::size_t offset, std::string_view key) const {
+        const std::optional<std::string_view> meant = nearest_word(key, format_.keys);
+        return object_.reading.source.fault(
+            offset, pointer_into(object_.pointer(), key),
+            std::string(format_.name) + " has no key " + in_quotes(key) + "; " +
+                (meant ? "did you mean " + in_quotes(*meant) + "? " : "") + "it may have " +
+                listed(format_.keys));
+    }
+
+    const Node& object_;
+    const ObjectFormat& format_;
+    std::array<std::optional<JsonValue>, most_keys> values_;  // in the order of the format's keys
+};
+
+// Leaves the value as it is where the key is missing.
+template <class Value>
+void read_if_there(const Members& members, std::string_view key, Value& value) {
+    if (const std::optional<Node> member = members.optional(key)) read(*member, value);
+}
 
 // One of `words`, by its place among them.
 std::size_t one_of(const Node& node, Words words) {
-    const auto& word = node.as<std::string>(listed(words, "or"));
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == word) return i;
+    if (node.value.kind() == JsonKind::text) {
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            if (node.value.is_text(words[i])) return i;
+        }
     }
     throw node.wrong_kind(listed(words, "or"));
 }
 
-Vec3d three_numbers(const Node& node) {
+void read(const Node& node, double& number) {
+    node.must_be(JsonKind::number, "a number");
+    number = node.value.number();
+}
+
+void read(const Node& node, bool& flag) {
+    node.must_be(JsonKind::boolean, "true or false");
+    flag = node.value.boolean();
+}
+
+void read(const Node& node, std::optional<std::string>& text) {
+    node.must_be(JsonKind::text, "text");
+    text = node.value.text();
+}
+
+void read(const Node& node, Vec3d& v) {
     constexpr std::string_view expected = "a list of three numbers";
-    if (node.as<JsonValue::Array>(expected).size() != 3) throw node.wrong_kind(expected);
-    return {number(node.item(0)), number(node.item(1)), number(node.item(2))};
+    node.must_be(JsonKind::list, expected);
+    if (node.value.items().size() != 3) throw node.wrong_kind(expected);
+    std::size_t i = 0;
+    for (const JsonValue item : node.value.items()) {
+        read(Node{node.reading, item, &node, {}, i}, v[i]);
+        ++i;
+    }
 }
 
-Camera camera(const Node& node) {
-    node.as<JsonValue::Object>("an object with position and target");
-    node.refuse_unknown_keys("a camera", camera_keys);
-    const Words needed = Words(camera_keys).first(2);
-    Camera camera;
-    camera.position = three_numbers(node.required("position", "a camera", needed));
-    camera.target = three_numbers(node.required("target", "a camera", needed));
-    if (const auto up = node.optional("up")) camera.up = three_numbers(*up);
-    if (const auto fov = node.optional("fov")) camera.fov = number(*fov);
-    return camera;
+void read(const Node& node, KernelKind& kernel) {
+    kernel = static_cast<KernelKind>(one_of(node, kernels));
 }
 
-Light light(const Node& node) {
-    node.as<JsonValue::Object>("an object with a direction");
-    node.refuse_unknown_keys("a light", light_keys);
-    Light light;
-    light.direction =
-        three_numbers(node.required("direction", "a light", Words(light_keys).first(1)));
-    if (const auto color = node.optional("color")) light.color = three_numbers(*color);
-    if (const auto intensity = node.optional("intensity")) light.intensity = number(*intensity);
-    if (const auto attached = node.optional("attached")) {
+void read(const Node& node, std::optional<Camera>& camera) {
+    node.must_be(JsonKind::object, "an object with position and target");
+    const Members members(node, camera_format);
+    camera.emplace();
+    read(members.required("position"), camera->position);
+    read(members.required("target"), camera->target);
+    read_if_there(members, "up", camera->up);
+    read_if_there(members, "fov", camera->fov);
+}
+
+void read(const Node& node, Light& light) {
+    node.must_be(JsonKind::object, "an object with a direction");
+    const Members members(node, light_format);
+    read(members.required("direction"), light.direction);
+    read_if_there(members, "color", light.color);
+    read_if_there(members, "intensity", light.intensity);
+    if (const auto attached = members.optional("attached")) {
         light.attached_to_camera = one_of(*attached, attachments) == 0;
     }
-    return light;
 }
 
-// What the keys of the element's shape say; refuses those of other shapes.
-Skeleton skeleton(const Node& node) {
-    const Node shape = node.required("shape", "an element", Words(element_keys).first(1));
+// An element whose shape is that of `Shape`; its name with an article is `name`.
+template <class Shape>
+void read_element(const Node& node, std::string_view name, Element& element) {
+    const ObjectFormat format{name, keys_of_element<Shape>, skeleton_keys<Shape>};
+    const Members members(node, format);
+    for_each_member(element.skeleton.emplace<Shape>(),
+                    [&](std::string_view key, auto& value) { read(members.required(key), value); });
+    read_if_there(members, "name", element.name);
+    read_if_there(members, "color", element.color);
+    read_if_there(members, "kernel", element.kernel);
+    read_if_there(members, "strength", element.strength);
+    read_if_there(members, "width", element.width);
+    read_if_there(members, "visible", element.visible);
+}
+
+void read(const Node& node, Element& element) {
+    node.must_be(JsonKind::object, "an object with a shape");
+    const Node shape = node.required("shape", element_format);
     switch (one_of(shape, shapes)) {
-        case 0: {
-            node.refuse_unknown_keys("a point", point_keys, element_keys);
-            return PointSkeleton{three_numbers(node.required("position", "a point", point_keys))};
-        }
-        case 1: {
-            node.refuse_unknown_keys("a segment", segment_keys, element_keys);
-            return SegmentSkeleton{three_numbers(node.required("a", "a segment", segment_keys)),
-                                   three_numbers(node.required("b", "a segment", segment_keys))};
-        }
-        case 2: {
-            node.refuse_unknown_keys("a circle", circle_keys, element_keys);
-            return CircleSkeleton{three_numbers(node.required("center", "a circle", circle_keys)),
-                                  three_numbers(node.required("normal", "a circle", circle_keys)),
-                                  number(node.required("radius", "a circle", circle_keys))};
-        }
+        case 0:
+            return read_element<PointSkeleton>(node, "a point", element);
+        case 1:
+            return read_element<SegmentSkeleton>(node, "a segment", element);
+        case 2:
+            return read_element<CircleSkeleton>(node, "a circle", element);
         default:
-            throw shape.fault("the shape " + in_quotes(std::get<std::string>(shape.value.content)) +
+            throw shape.fault("the shape " + in_quotes(shape.value.text()) +
                               " belongs to the format but is not built yet; use " +
-                              listed(built_shapes, "or"));
+                              listed(Words(shapes).first(built_shapes), "or"));
     }
 }
 
-Element element(const Node& node) {
-    node.as<JsonValue::Object>("an object with a shape");
-    Element element;
-    element.skeleton = skeleton(node);
-    if (const auto name = node.optional("name")) element.name = name->as<std::string>("text");
-    if (const auto color = node.optional("color")) element.color = three_numbers(*color);
-    if (const auto kernel = node.optional("kernel")) {
-        element.kernel = static_cast<KernelKind>(one_of(*kernel, kernels));
+template <class Item>
+void read_list(const Node& node, std::string_view expected, std::vector<Item>& items) {
+    node.must_be(JsonKind::list, expected);
+    items.reserve(node.value.items().size());
+    for (const JsonValue item : node.value.items()) {
+        node.reading.steps.take_one();
+        const std::size_t i = items.size();
+        read(Node{node.reading, item, &node, {}, i}, items.emplace_back());
     }
-    if (const auto strength = node.optional("strength")) element.strength = number(*strength);
-    if (const auto width = node.optional("width")) element.width = number(*width);
-    if (const auto visible = node.optional("visible")) {
-        element.visible = visible->as<bool>("true or false");
-    }
-    return element;
 }
 
-Scene scene(const Node& node) {
-    node.as<JsonValue::Object>("an object with ivory, threshold and elements");
-    constexpr std::array<std::string_view, 3> needed{"ivory", "threshold", "elements"};
+void read(const Node& node, Scene& scene) {
+    node.must_be(JsonKind::object, "an object with ivory, threshold and elements");
 
     // Before the keys: another version may have others.
-    const Node version = node.required("ivory", "a scene", needed);
-    if (number(version) != 1) {
+    const Node version = node.required("ivory", scene_format);
+    double number = 0;
+    read(version, number);
+    if (number != 1) {
         throw version.fault("the version of the format is " + version.value.description() +
                             "; it must be 1, the only one there is");
     }
-    node.refuse_unknown_keys("a scene", scene_keys);
 
-    Scene scene;
-    scene.threshold = number(node.required("threshold", "a scene", needed));
-    if (const auto background = node.optional("background")) {
-        scene.background = three_numbers(*background);
+    const Members members(node, scene_format);
+    read(members.required("threshold"), scene.threshold);
+    read_if_there(members, "background", scene.background);
+    read_if_there(members, "camera", scene.camera);
+    if (const auto lights = members.optional("lights")) {
+        read_list(*lights, "a list of lights", scene.lights.emplace());
     }
-    if (const auto member = node.optional("camera")) scene.camera = camera(*member);
-    if (const auto lights = node.optional("lights")) {
-        const std::size_t count = lights->as<JsonValue::Array>("a list of lights").size();
-        scene.lights.emplace();
-        for (std::size_t i = 0; i < count; ++i) scene.lights->push_back(light(lights->item(i)));
-    }
-    const Node elements = node.required("elements", "a scene", needed);
-    const std::size_t count = elements.as<JsonValue::Array>("a list of elements").size();
-    scene.elements.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) scene.elements.push_back(element(elements.item(i)));
-    return scene;
+    read_list(members.required("elements"), "a list of elements", scene.elements);
 }
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path) {
-    return parse_scene(read_file(path), file_label(path));
+Scene read_scene(const std::filesystem::path& path, const Stop& stop) {
+    return parse_scene(read_file(path, stop), file_label(path), stop);
 }
 
-Scene parse_scene(std::string_view text, const std::string& name) {
+Scene parse_scene(std::string_view text, const std::string& name, const Stop& stop) {
     const SourceText source(text, name);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw source.fault(0, "",
                            "the file is empty; the least scene is {\"ivory\": 1, \"threshold\": "
                            "0.5, \"elements\": []}");
     }
-    const JsonValue root = parse_json(source);
-    Scene result = scene({source, root});
-    if (const std::optional<SceneFault> fault = find_fault(result)) {
-        throw source.fault(nearest_to(root, fault->pointer).offset, fault->pointer, fault->message);
+    const JsonDocument document = parse_json(source, stop);
+    Reading reading{source, Steps(stop)};
+    Scene scene;
+    read(Node{reading, document.root()}, scene);
+    if (const std::optional<SceneFault> fault = find_fault(scene, stop)) {
+        const JsonValue value = nearest_to(document.root(), fault->pointer);
+        throw source.fault(value.offset(), fault->pointer, fault->message);
     }
-    return result;
+    return scene;
 }
 
 }  // namespace ivory

@@ -7,15 +7,18 @@
 
 #include "core/scene/error.h"
 #include "core/scene/scene.h"
+#include "core/scene/stop.h"
 
 namespace ivory {
 
 // The scene in the file, or on standard input where the path is "-". Throws Error, one line: file,
-// JSON pointer with line and column, what is wrong, what would be right.
-[[nodiscard]] Scene read_scene(const std::filesystem::path& path);
+// JSON pointer with line and column, what is wrong, what would be right. Looks at `stop` at least
+// once in a megabyte and once in `values_between_looks` (core/scene/stop.h).
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path, const Stop& stop = {});
 
 // The same for a text in memory; `name` stands for the file in messages.
-[[nodiscard]] Scene parse_scene(std::string_view text, const std::string& name);
+[[nodiscard]] Scene parse_scene(std::string_view text, const std::string& name,
+                                const Stop& stop = {});
 
 // A text that parse_scene reads back to the same scene, bit for bit: one line per element, light
 // and top-level key, a newline at the end. Kernel, strength, width and visible are left out where

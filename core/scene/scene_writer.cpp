@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -8,98 +9,99 @@
 #include "core/scene/read_file.h"
 #include "core/scene/scene_fault.h"
 #include "core/scene/scene_json.h"
+#include "core/scene/skeleton_members.h"
 #include "core/scene/text.h"
 #include "core/scene/write_file.h"
 
 namespace ivory {
 namespace {
 
-// `"key": value` for each member, in order. Keys are plain words that need no escape.
+// Appends `"key": value` for each member, in order. Keys and words need no escape.
 class Members {
   public:
-    Members& add(std::string_view key, const std::string& value) {
-        members_.push_back("\"" + std::string(key) + "\": " + value);
+    Members(std::string& text, std::string_view separator) : text_(text), separator_(separator) {}
+
+    // Appends the key; the value is to follow.
+    std::string& add(std::string_view key) {
+        if (!first_) text_ += separator_;
+        first_ = false;
+        text_.append("\"").append(key).append("\": ");
+        return text_;
+    }
+    Members& add(std::string_view key, double value) {
+        append_number(add(key), value);
         return *this;
     }
-    Members& add(std::string_view key, double value) { return add(key, number_text(value)); }
     Members& add(std::string_view key, const Vec3d& v) {
-        return add(
-            key, "[" + number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z) + "]");
+        add(key);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            text_ += axis == 0 ? "[" : ", ";
+            append_number(text_, v[axis]);
+        }
+        text_ += "]";
+        return *this;
     }
-    Members& add_text(std::string_view key, std::string_view value) {
-        return add(key, nlohmann::json(value).dump());
+    Members& add_word(std::string_view key, std::string_view word) {
+        add(key).append("\"").append(word).append("\"");
+        return *this;
     }
-
-    std::string on_one_line() const { return "{" + joined(", ") + "}"; }
-    std::string one_per_line() const { return "{\n  " + joined(",\n  ") + "\n}"; }
 
   private:
-    std::string joined(std::string_view separator) const {
-        std::string all;
-        for (const std::string& member : members_) {
-            if (!all.empty()) all += separator;
-            all += member;
-        }
-        return all;
-    }
-
-    std::vector<std::string> members_;
+    std::string& text_;
+    std::string_view separator_;
+    bool first_ = true;
 };
 
-std::string text_of(const Camera& camera) {
-    return Members()
-        .add("position", camera.position)
+constexpr std::string_view on_one_line = ", ", one_per_line = ",\n  ";
+
+void append_members(Members members, const Camera& camera) {
+    members.add("position", camera.position)
         .add("target", camera.target)
         .add("up", camera.up)
-        .add("fov", camera.fov)
-        .on_one_line();
+        .add("fov", camera.fov);
 }
 
-std::string text_of(const Light& light) {
-    return Members()
-        .add("direction", light.direction)
+void append_members(Members members, const Light& light) {
+    members.add("direction", light.direction)
         .add("color", light.color)
         .add("intensity", light.intensity)
-        .add_text("attached", light.attached_to_camera ? "camera" : "scene")
-        .on_one_line();
+        .add_word("attached", light.attached_to_camera ? "camera" : "scene");
 }
 
-void add_skeleton(Members& members, const PointSkeleton& point) {
-    members.add("position", point.position);
-}
-
-void add_skeleton(Members& members, const SegmentSkeleton& segment) {
-    members.add("a", segment.a).add("b", segment.b);
-}
-
-void add_skeleton(Members& members, const CircleSkeleton& circle) {
-    members.add("center", circle.center).add("normal", circle.normal).add("radius", circle.radius);
-}
-
-std::string text_of(const Element& element) {
-    const Element defaults;
-    Members members;
-    members.add_text("shape", shape_word(element.skeleton));
-    if (element.name) members.add_text("name", *element.name);
-    std::visit([&](const auto& skeleton) { add_skeleton(members, skeleton); }, element.skeleton);
+void append_members(Members members, const Element& element) {
+    static const Element defaults;
+    members.add_word("shape", shape_word(element.skeleton));
+    if (element.name) members.add("name") += nlohmann::json(*element.name).dump();
+    const auto add_skeleton = [&](const auto& skeleton) {
+        for_each_member(skeleton, [&](std::string_view key, const auto& value) {
+            members.add(key, value);
+        });
+    };
+    std::visit(add_skeleton, element.skeleton);
     members.add("color", element.color);
     if (element.kernel != defaults.kernel) {
-        members.add_text("kernel", kernel_word(element.kernel));
+        members.add_word("kernel", kernel_word(element.kernel));
     }
     if (element.strength != defaults.strength) members.add("strength", element.strength);
     if (element.width != defaults.width) members.add("width", element.width);
-    if (!element.visible) members.add("visible", "false");
-    return members.on_one_line();
+    if (!element.visible) members.add("visible") += "false";
+}
+
+template <class Part>
+void append_object(std::string& text, const Part& part) {
+    text += "{";
+    append_members(Members(text, on_one_line), part);
+    text += "}";
 }
 
 template <class Item>
-std::string list_of(const std::vector<Item>& items) {
-    std::string list;
-    for (const Item& item : items) {
-        list += list.empty() ? "\n    " : ",\n    ";
-        list += text_of(item);
+void append_list(std::string& text, const std::vector<Item>& items) {
+    text += "[";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        text += i == 0 ? "\n    " : ",\n    ";
+        append_object(text, items[i]);
     }
-    return list.empty() ? "[]" : "[" + list + "\n  ]";
+    text += items.empty() ? "]" : "\n  ]";
 }
 
 // `label` is what a message calls the scene.
@@ -107,12 +109,14 @@ std::string checked_text(const Scene& scene, const std::string& label) {
     if (const std::optional<SceneFault> fault = find_fault(scene)) {
         throw Error(label + ": " + fault->pointer + ": " + fault->message);
     }
-    Members members;
+    std::string text = "{\n  ";
+    Members members(text, one_per_line);
     members.add("ivory", 1).add("threshold", scene.threshold).add("background", scene.background);
-    if (scene.camera) members.add("camera", text_of(*scene.camera));
-    if (scene.lights) members.add("lights", list_of(*scene.lights));
-    members.add("elements", list_of(scene.elements));
-    return members.one_per_line() + "\n";
+    if (scene.camera) append_object(members.add("camera"), *scene.camera);
+    if (scene.lights) append_list(members.add("lights"), *scene.lights);
+    append_list(members.add("elements"), scene.elements);
+    text += "\n}\n";
+    return text;
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "core/scene/text.h"
 
+#include <locale.h>
+#include <stdlib.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -71,19 +74,37 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string number_text(double value) {
-    if (value == 0) return std::signbit(value) ? "-0.0" : "0";  // a bare -0 is an integer to many
-    std::array<char, 64> buffer{};
+    std::string text;
+    append_number(text, value);
+    return text;
+}
+
+void append_number(std::string& text, double value) {
+    if (value == 0) {
+        text += std::signbit(value) ? "-0.0" : "0";  // a bare -0 is an integer to many
+        return;
+    }
+    std::array<char, 64> buffer;
     char* const end = buffer.data() + buffer.size();
     const double magnitude = std::abs(value);
     const std::to_chars_result written =
         magnitude >= 1e-5 && magnitude < 1e16
             ? std::to_chars(buffer.data(), end, value, std::chars_format::fixed)
             : std::to_chars(buffer.data(), end, value);
-    return {buffer.data(), written.ptr};
+    text.append(buffer.data(), written.ptr);
+}
+
+double rounded(const std::string& number) {
+    static const locale_t c_locale = ::newlocale(LC_ALL_MASK, "C", nullptr);
+    return ::strtod_l(number.c_str(), nullptr, c_locale);
 }
 
 std::optional<std::size_t> first_invalid_utf8(std::string_view text) {
     for (std::size_t at = 0; at < text.size();) {
+        if (static_cast<unsigned char>(text[at]) < 0x80) {
+            ++at;
+            continue;
+        }
         const CodePoint c = first_code_point(text.substr(at));
         if (c.bytes == 0) return at;
         at += c.bytes;

@@ -15,6 +15,13 @@ namespace ivory {
 // takes.
 [[nodiscard]] std::string number_text(double value);
 
+// Appends `number_text(value)`.
+void append_number(std::string& text, double value);
+
+// The nearest double to a number as C writes it, in whatever locale; infinite beyond the largest.
+// For what from_chars calls out of range, which is what is too small as well as what is too large.
+[[nodiscard]] double rounded(const std::string& number);
+
 // Offset of the first byte that does not belong to well-formed UTF-8 (Unicode 15, table 3-7), or
 // nothing where all do.
 [[nodiscard]] std::optional<std::size_t> first_invalid_utf8(std::string_view text);
