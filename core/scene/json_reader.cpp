@@ -462,7 +462,9 @@ class Parser {
         if (expected != a_value || what == bad_literal) {
             message += "; expected " + std::string(expected);
         }
-        if (what == bad_escape) message += R"(; expected one of " \ / b f n r t u)";
+        if (expected == a_value && what == bad_escape) {
+            message += R"(; expected one of " \ / b f n r t u)";
+        }
         throw syntax_fault(message);
     }
 
@@ -518,28 +520,34 @@ struct Survey {
     std::size_t entries = 0;  // at most so many has the text's index
 };
 
-// Each value but the first stands behind one of [ , : and each key behind one of { and , ; lists
-// and objects have two entries. Blocks without branches, which compilers turn into vectors.
-Survey survey(std::string_view text) {
-    constexpr std::size_t block = 64;
-    Survey survey;
-    for (std::size_t start = 0; start < text.size(); start += block) {
-        unsigned char odd = 0, entries = 0;
-        const auto count = [&](char c) {
-            const auto byte = static_cast<unsigned char>(c);
-            const bool control = byte < 0x20 && c != '\n' && c != '\t' && c != '\r';
-            odd = static_cast<unsigned char>(odd | (byte & 0x80) | (control ? 1 : 0));
-            entries = static_cast<unsigned char>(entries + (c == ',' ? 1 : 0) + (c == ':' ? 1 : 0) +
-                                                 (c == '[' ? 2 : 0) + (c == '{' ? 2 : 0));
-        };
-        if (text.size() - start >= block) {
-            for (std::size_t i = 0; i < block; ++i) count(text[start + i]);
-        } else {
-            for (const char c : text.substr(start)) count(c);
-        }
-        survey.plain = survey.plain && odd == 0;
-        survey.entries += entries;
+constexpr std::size_t survey_block = 64;  // bytes; twice as many fit into one
+
+// No branches and no sums wider than a byte, so that compilers make vectors of it.
+template <std::size_t Size>
+void survey_bytes(const char* text, Survey& survey) {
+    unsigned char odd = 0, entries = 0;
+    for (std::size_t i = 0; i < Size; ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        const auto is = [c](char wanted) { return static_cast<unsigned char>(c == wanted); };
+        const auto low = static_cast<unsigned char>(c < 0x20);
+        const auto space = static_cast<unsigned char>(is('\n') | is('\t') | is('\r'));
+        odd = static_cast<unsigned char>(odd | (c & 0x80) | (low & ~space));
+        entries = static_cast<unsigned char>(entries + is(',') + is(':') + is('[') + is('[') +
+                                             is('{') + is('{'));
     }
+    survey.plain = survey.plain && odd == 0;
+    survey.entries += entries;
+}
+
+// Each value but the first stands behind one of [ , : and each key behind one of { and , ; lists
+// and objects have two entries.
+Survey survey(std::string_view text) {
+    Survey survey;
+    std::size_t at = 0;
+    for (; text.size() - at >= survey_block; at += survey_block) {
+        survey_bytes<survey_block>(text.data() + at, survey);
+    }
+    for (; at < text.size(); ++at) survey_bytes<1>(text.data() + at, survey);
     return survey;
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tests/error_line.h"
 
@@ -17,31 +18,59 @@ namespace {
 
 using tests::error_line;
 
-JsonValue parse(std::string_view text) { return parse_json(SourceText(text, "x")); }
+JsonDocument parse(std::string_view text) { return parse_json(SourceText(text, "x")); }
+
+template <class Item>
+std::vector<Item> listed(const JsonRange<Item>& range) {
+    return {range.begin(), range.end()};
+}
 
 std::string fault_of(std::string_view text) {
     return error_line([&] { static_cast<void>(parse(text)); });
 }
 
 double number(const std::string& text) {
-    return std::get<double>(
-        std::get<JsonValue::Array>(parse("[" + text + "]").content).at(0).content);
+    const std::string list = "[" + text + "]";
+    const JsonDocument document = parse(list);
+    return (*document.root().items().begin()).number();
 }
 
 TEST(JsonReader, KeepsEveryKindOfValue) {
-    const JsonValue root = parse(R"({"z": null, "a": [true, false, "é\n\u00e9", -1.5], "o": {}})");
-    const auto& members = std::get<JsonValue::Object>(root.content);
+    const JsonDocument document =
+        parse(R"({"z": null, "a": [true, false, "é\n\u00e9", -1.5], "o": {}})");
+    ASSERT_EQ(document.root().kind(), JsonKind::object);
+    const auto members = listed(document.root().members());
     ASSERT_EQ(members.size(), 3U);
-    EXPECT_EQ(members[0].key, "z");  // in file order
-    EXPECT_TRUE(std::holds_alternative<std::nullptr_t>(members[0].value.content));
-    const auto& items = std::get<JsonValue::Array>(members[1].value.content);
-    EXPECT_TRUE(std::get<bool>(items.at(0).content));
-    EXPECT_FALSE(std::get<bool>(items.at(1).content));
-    EXPECT_EQ(std::get<std::string>(items.at(2).content), "é\né");
-    EXPECT_EQ(std::get<double>(items.at(3).content), -1.5);
-    EXPECT_TRUE(std::get<JsonValue::Object>(members[2].value.content).empty());
-    EXPECT_EQ(find_member(members, "o"), &members[2].value);
-    EXPECT_EQ(find_member(members, "p"), nullptr);
+    EXPECT_EQ(members[0].key.text(), "z");  // in file order
+    EXPECT_EQ(members[0].value.kind(), JsonKind::null);
+    ASSERT_EQ(members[1].value.kind(), JsonKind::list);
+    const auto items = listed(members[1].value.items());
+    ASSERT_EQ(items.size(), 4U);
+    EXPECT_EQ(items[0].kind(), JsonKind::boolean);
+    EXPECT_TRUE(items[0].boolean());
+    EXPECT_EQ(items[1].kind(), JsonKind::boolean);
+    EXPECT_FALSE(items[1].boolean());
+    EXPECT_EQ(items[2].kind(), JsonKind::text);
+    EXPECT_EQ(items[2].text(), "é\né");
+    EXPECT_EQ(items[3].kind(), JsonKind::number);
+    EXPECT_EQ(items[3].number(), -1.5);
+    EXPECT_EQ(members[2].value.kind(), JsonKind::object);
+    EXPECT_EQ(members[2].value.members().size(), 0U);
+    const auto found = find_member(document.root(), "o");
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->offset(), members[2].value.offset());
+    EXPECT_FALSE(find_member(document.root(), "p"));
+}
+
+TEST(JsonReader, TextIsWhatItsEscapesStandFor) {
+    const JsonDocument document =
+        parse(R"(["\"\\\/\b\f\n\r\t", "a\u0041\u00e9\u20AC\ud83e\udda3\u0000z", "\\u0041"])");
+    const auto items = listed(document.root().items());
+    EXPECT_EQ(items[0].text(), "\"\\/\b\f\n\r\t");
+    EXPECT_EQ(items[1].text(), std::string("aAé€🦣\0z", 13));
+    EXPECT_EQ(items[2].text(), "\\u0041");
+    EXPECT_TRUE(items[2].is_text("\\u0041"));
+    EXPECT_FALSE(items[2].is_text("A"));
 }
 
 TEST(JsonReader, NumbersAreTheNearestDoubles) {
@@ -87,19 +116,18 @@ TEST(JsonReader, NumbersDoNotDependOnTheLocale) {
 
 TEST(JsonReader, KnowsWhereEachValueStands) {
     const std::string_view text = "\n{ \"a\\\"b\" : [ 10 ,-2.5,{\"c\":true}] ,\n\"d\":\"]\" }";
-    const JsonValue root = parse(text);
-    const auto from = [&](const JsonValue& value) { return text.substr(value.offset); };
-    EXPECT_EQ(root.offset, 1U);
-    const auto& members = std::get<JsonValue::Object>(root.content);
-    EXPECT_TRUE(text.substr(members[0].offset).starts_with("\"a\\\"b\" :"));
+    const JsonDocument document = parse(text);
+    const auto from = [&](const JsonValue& value) { return text.substr(value.offset()); };
+    EXPECT_EQ(document.root().offset(), 1U);
+    const auto members = listed(document.root().members());
+    EXPECT_TRUE(from(members[0].key).starts_with("\"a\\\"b\" :"));
     EXPECT_TRUE(from(members[0].value).starts_with("[ 10"));
-    const auto& items = std::get<JsonValue::Array>(members[0].value.content);
+    const auto items = listed(members[0].value.items());
     EXPECT_TRUE(from(items.at(0)).starts_with("10 ,"));
     EXPECT_TRUE(from(items.at(1)).starts_with("-2.5,"));
     EXPECT_TRUE(from(items.at(2)).starts_with("{\"c\""));
-    EXPECT_TRUE(
-        from(std::get<JsonValue::Object>(items.at(2).content)[0].value).starts_with("true"));
-    EXPECT_TRUE(text.substr(members[1].offset).starts_with("\"d\""));
+    EXPECT_TRUE(from((*items.at(2).members().begin()).value).starts_with("true"));
+    EXPECT_TRUE(from(members[1].key).starts_with("\"d\""));
     EXPECT_TRUE(from(members[1].value).starts_with("\"]\""));
 }
 
@@ -107,7 +135,7 @@ TEST(JsonReader, CountsColumnsInCharactersAndPassesOverAByteOrderMark) {
     EXPECT_EQ(fault_of("[\n \"é∑🦣\", x]"),
               "x: line 2, column 9: not JSON: invalid literal at \"x\"; expected '[', '{', or a "
               "literal");
-    EXPECT_EQ(parse("\xEF\xBB\xBF[1]").offset, 3U);
+    EXPECT_EQ(parse("\xEF\xBB\xBF[1]").root().offset(), 3U);
     EXPECT_EQ(fault_of("\xEF\xBB\xBF[x]"),
               "x: line 1, column 2: not JSON: invalid literal at \"x\"; expected '[', '{', or a "
               "literal");
@@ -176,11 +204,51 @@ TEST(JsonReader, MessagesStayShortAndOnOneLine) {
               "two\\nlines\\x1b: line 1, c");
 }
 
+// Four bytes for each value and eight for a list or object, none for what stands between.
+TEST(JsonReader, TheIndexIsAsSmallAsItsValuesAreFew) {
+    std::string zeros = "[0";
+    for (int i = 1; i < 100'000; ++i) zeros += ",0";
+    EXPECT_EQ(parse(zeros + "]").index().capacity(), 100'002U);
+    EXPECT_EQ(parse(R"( {"a": [1, [], {}], "b": "c d"} )").index().size(), 13U);
+    EXPECT_LE(parse(R"({"a": [1, [], {}], "b": "c d"})").index().capacity(), 14U);
+}
+
+TEST(JsonReader, LooksAtTheStopOnceInAMegabyteOfAnything) {
+    constexpr std::size_t bytes = 8 * bytes_between_looks;
+    const auto repeated = [](std::string_view piece) {
+        std::string text;
+        while (text.size() < bytes) text += piece;
+        return text;
+    };
+    for (const std::string& text :
+         {repeated(" ") + "0", "[" + repeated("0,") + "0]", "\"" + repeated("z") + "\"",
+          "\"" + repeated("é") + "\"", repeated("0") + "0", "0." + repeated("7"),
+          "[" + repeated("[],") + "[]]", "\"" + repeated("\\n") + "\"",
+          "[" + repeated(R"({"a":1},)") + "0]"}) {
+        std::size_t looks = 0;
+        try {
+            static_cast<void>(parse_json(SourceText(text, "x"), [&] { ++looks; }));
+        } catch (const Error&) {
+            // a number of leading zeros
+        }
+        EXPECT_GE(looks, text.size() / bytes_between_looks) << text.substr(0, 10);
+        // In each of the two passes, over the bytes and over the values.
+        struct Stopped {};
+        for (const std::size_t last : {std::size_t{1}, looks / 2, looks}) {
+            std::size_t so_far = 0;
+            const auto stop = [&] {
+                if (++so_far == last) throw Stopped();
+            };
+            EXPECT_THROW(static_cast<void>(parse_json(SourceText(text, "x"), stop)), Stopped);
+        }
+    }
+}
+
 TEST(NearestTo, FollowsAPointerAsFarAsItLeads) {
     const std::string_view text = R"({"a/b": [1, {"~": 2}], "": 3})";
-    const JsonValue root = parse(text);
+    const JsonDocument document = parse(text);
     const auto at = [&](std::string_view pointer) {
-        return text.substr(nearest_to(root, pointer).offset, 2);
+        return text.substr(nearest_to(document.root(), pointer).offset(), 2);
     };
     EXPECT_EQ(at(""), "{\"");
     EXPECT_EQ(at("/a~1b/0"), "1,");
@@ -188,7 +256,7 @@ TEST(NearestTo, FollowsAPointerAsFarAsItLeads) {
     EXPECT_EQ(at("/"), "3}");
     EXPECT_EQ(at("/a~1b/2"), "[1");
     EXPECT_EQ(at("/a~1b/1/missing/0"), "{\"");
-    EXPECT_EQ(nearest_to(root, "/missing").offset, 0U);
+    EXPECT_EQ(nearest_to(document.root(), "/missing").offset(), 0U);
     EXPECT_EQ(pointer_into("/x", "a/~b"), "/x/a~1~0b");
 }
 
