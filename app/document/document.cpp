@@ -20,9 +20,9 @@ Document::Document() {
     history_.push_back({"", current_, std::nullopt});
 }
 
-Document Document::open(const std::filesystem::path& path) {
+Document Document::open(const std::filesystem::path& path, const Stop& stop) {
     Document document;
-    document.current_ = std::make_shared<const Scene>(read_scene(path));
+    document.current_ = std::make_shared<const Scene>(read_scene(path, stop));
     document.saved_ = document.current_;
     document.history_.front().scene = document.current_;
     document.path_ = path;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/scene/stop.h"
 
 namespace ivory {
 
@@ -20,8 +21,8 @@ class Document {
     using Selection = std::optional<std::size_t>;     // an index into scene().elements
 
     Document();  // an empty scene, without a path
-    // The scene of a file. Throws Error, one line, as the reader does.
-    [[nodiscard]] static Document open(const std::filesystem::path& path);
+    // The scene of a file. Throws Error, one line, and looks at `stop`, as `read_scene` does.
+    [[nodiscard]] static Document open(const std::filesystem::path& path, const Stop& stop = {});
 
     // The scene as it stands, the value of a running drag included.
     [[nodiscard]] const Scene& scene() const { return *current_; }

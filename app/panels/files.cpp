@@ -41,7 +41,7 @@ std::string shown_name(const std::filesystem::path& path) {
 }  // namespace
 
 void open_scene(ViewerState& state, const std::filesystem::path& path) {
-    Document document = Document::open(path);
+    Document document = Document::open(path, state.stop);
     const WindowSize size = state.viewport.width > 0 ? state.viewport.size() : WindowSize{16, 9};
     const Scene& scene = document.scene();
     const Camera camera = camera_of(scene, compile(scene), size.width, size.height);
@@ -57,7 +57,7 @@ void save_scene(ViewerState& state, const std::filesystem::path& path) {
 void request_open(ViewerState& state, const std::filesystem::path& path) {
     // nobody is asked about changes for the sake of a file that cannot be opened
     try {
-        if (state.document.dirty()) (void)read_scene(path);
+        if (state.document.dirty()) (void)read_scene(path, state.stop);
     } catch (const Error& error) {
         state.say_error(error.what());
         return;

@@ -13,6 +13,7 @@
 #include "app/platform/fonts.h"
 #include "app/platform/input.h"
 #include "app/platform/window_rect.h"
+#include "core/scene/stop.h"
 
 namespace ivory {
 
@@ -48,6 +49,7 @@ struct ViewerState {
     bool skeleton_shown = true;  // the overlay as a whole
     Message message;
     PanelMemory panels;
+    Stop stop;  // asked while a file is read; empty where a signal ends the process by itself
 
     // Wishes, fulfilled by Viewer at the end of the frame.
     std::optional<std::filesystem::path> screenshot_wanted;  // F12

@@ -23,6 +23,7 @@ void run_headless(const HeadlessSettings& settings) {
     viewer_settings.wake = [&] { wake_up.wake(); };
     viewer_settings.hold_back_coarse = false;
     Viewer viewer(*context, std::move(viewer_settings));
+    viewer.state().stop = settings.stop;
     if (settings.scene) open_scene(viewer.state(), *settings.scene);
 
     ScriptPlayer player(viewer, *context, events, wake_up, settings.stop);

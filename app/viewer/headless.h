@@ -15,7 +15,7 @@ struct HeadlessSettings {
     std::optional<std::string> screenshot;  // of the window, at the end
     WindowSize size{1280, 720};
     int threads = 1;
-    std::function<void()> stop;  // asked in every frame; may throw
+    std::function<void()> stop;  // asked in every frame and while a file is read; may throw
 };
 
 // Throws Error: the scene, the script with its line, or the machine.

@@ -620,24 +620,6 @@ Error SourceText::fault(std::size_t offset, std::string_view pointer,
         ": " + std::string(message));
 }
 
-JsonKind JsonValue::kind() const {
-    switch (first()) {
-        case '{':
-            return JsonKind::object;
-        case '[':
-            return JsonKind::list;
-        case '"':
-            return JsonKind::text;
-        case 't':
-        case 'f':
-            return JsonKind::boolean;
-        case 'n':
-            return JsonKind::null;
-        default:
-            return JsonKind::number;
-    }
-}
-
 bool JsonValue::boolean() const { return first() == 't'; }
 
 double JsonValue::number() const { return number_at(document_->text().substr(offset())); }

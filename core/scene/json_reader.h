@@ -147,6 +147,24 @@ inline std::size_t JsonValue::offset() const { return document_->index()[entry_]
 
 inline char JsonValue::first() const { return document_->text()[offset()]; }
 
+inline JsonKind JsonValue::kind() const {
+    switch (first()) {
+        case '{':
+            return JsonKind::object;
+        case '[':
+            return JsonKind::list;
+        case '"':
+            return JsonKind::text;
+        case 't':
+        case 'f':
+            return JsonKind::boolean;
+        case 'n':
+            return JsonKind::null;
+        default:
+            return JsonKind::number;
+    }
+}
+
 inline std::size_t JsonValue::end() const {
     const bool is_container = first() == '[' || first() == '{';
     return is_container ? document_->index()[entry_ + 1] : entry_ + 1;

@@ -1,8 +1,12 @@
 #include "core/scene/read_file.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <signal.h>
 #include <sys/stat.h>
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -80,6 +84,46 @@ TEST(ReadFile, SaysThatReadingFailsAfterOpening) {
 TEST(ReadFile, EndsWhereAFileDoesNot) {
     EXPECT_EQ(error_of("/dev/zero"),
               "/dev/zero: is larger than 256 MiB, the most that is read; name a smaller file");
+}
+
+TEST(ReadFile, LooksAtTheStopOnceInAMegabyte) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "file") << std::string(5 * bytes_between_looks, 'x');
+    std::size_t looks = 0;
+    EXPECT_EQ(read_file(folder / "file", [&] { ++looks; }).size(), 5 * bytes_between_looks);
+    EXPECT_GE(looks, 5U);
+    struct Stopped {};
+    const auto stop_at_the_last = [&] {
+        if (--looks == 0) throw Stopped();
+    };
+    EXPECT_THROW(static_cast<void>(read_file(folder / "file", stop_at_the_last)), Stopped);
+}
+
+TEST(ReadFile, ASignalEndsTheWaitForBytesOnlyWhereItIsAStop) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    struct sigaction before {}, action {};
+    action.sa_handler = [](int) {};  // and no SA_RESTART
+    ASSERT_EQ(::sigaction(SIGUSR1, &action, &before), 0);
+    const pthread_t reader = ::pthread_self();
+    std::atomic<int> signals{0};
+    std::atomic<bool> enough{false};
+    std::thread writer([&] {
+        std::ofstream pipe(folder / "pipe");  // waits until the reader has opened
+        while (!enough) {
+            ::pthread_kill(reader, SIGUSR1);
+            ++signals;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        pipe << "bytes";
+    });
+    // The file's end comes only after looks that nothing but a signal can have brought about.
+    int looks = 0;
+    EXPECT_EQ(read_file(folder / "pipe", [&] { enough = ++looks >= 5; }), "bytes");
+    writer.join();
+    EXPECT_GE(signals, 1);
+    EXPECT_GE(looks, 5);
+    ::sigaction(SIGUSR1, &before, nullptr);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -161,6 +162,59 @@ TEST(Along, FindsParallelVectorsOfAnyLengthAndNothingBeyondItsAngle) {
     }
     EXPECT_TRUE(along({0, 0, 5e-324}, {0, 0, -1.7e308}));
     EXPECT_FALSE(along({0, 5e-324, 0}, {0, 0, -1.7e308}));
+}
+
+// What `unless names are unique` means, taken literally.
+std::optional<std::string> pointer_to_second_name(const Scene& scene) {
+    const std::vector<std::string> names = element_names(scene);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (names[i] != names[j]) continue;
+            return "/elements/" + std::to_string(scene.elements[i].name ? i : j) + "/name";
+        }
+    }
+    return std::nullopt;
+}
+
+TEST(SceneFault, TheFirstNameThatIsThereAlreadyIsFound) {
+    const auto seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const std::vector<std::string> names{"point 1", "point 2",   "point 5",   "point 05", "a",
+                                         "b",       "segment 1", "segment 3", "c",        "d"};
+    int faults = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+        Scene scene;
+        for (std::size_t count = random() % 8; count > 0; --count) {
+            Element element;
+            if (random() % 3 == 0) element.skeleton = SegmentSkeleton{};
+            if (random() % 3 == 0) element.name = names[random() % names.size()];
+            scene.elements.push_back(element);
+        }
+        const std::optional<SceneFault> fault = find_fault(scene);
+        const std::optional<std::string> expected = pointer_to_second_name(scene);
+        ASSERT_EQ(fault.has_value(), expected.has_value());
+        if (!fault) continue;
+        ++faults;
+        ASSERT_EQ(fault->pointer, *expected);
+    }
+    EXPECT_GT(faults, 300);
+}
+
+TEST(SceneFault, LooksAtTheStopWhileElementsAndNamesAreChecked) {
+    constexpr std::size_t pieces = 5;
+    Scene scene;
+    scene.elements.resize(pieces * values_between_looks);
+    const auto looks = [&] {
+        std::size_t count = 0;
+        static_cast<void>(find_fault(scene, [&] { ++count; }));
+        return count;
+    };
+    EXPECT_EQ(looks(), pieces);  // no name is written, so that none can be there twice
+    scene.elements.front().name = "one";
+    EXPECT_EQ(looks(), 3 * pieces);
+    struct Stopped {};
+    EXPECT_THROW(static_cast<void>(find_fault(scene, [] { throw Stopped(); })), Stopped);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/json_reader.h"
+#include "core/scene/scene_fault.h"
 #include "tests/error_line.h"
 #include "tests/temporary_folder.h"
 
@@ -386,6 +388,26 @@ TEST(ParseScene, TenThousandElementsWithNamesTakeNoQuadraticTime) {
         error_line([&] { static_cast<void>(write_scene(scene)); }),
         "the scene: /elements/9999/name: the name \"atom 5\" is also that of /elements/5; each "
         "element must have a name of its own");
+}
+
+TEST(ParseScene, LooksAtTheStopWhileElementsAreTaken) {
+    constexpr std::size_t pieces = 5;
+    Scene scene;
+    scene.elements.resize(pieces * values_between_looks);
+    const std::string text = write_scene(scene);
+    const auto looks_of = [](const auto& job) {
+        std::size_t looks = 0;
+        job([&] { ++looks; });
+        return looks;
+    };
+    const std::size_t parsing = looks_of([&](const Stop& stop) {
+        static_cast<void>(parse_json(SourceText(text, "x"), stop));
+    });
+    const std::size_t checking =
+        looks_of([&](const Stop& stop) { static_cast<void>(find_fault(scene, stop)); });
+    const std::size_t all =
+        looks_of([&](const Stop& stop) { static_cast<void>(parse_scene(text, "x", stop)); });
+    EXPECT_GE(all, parsing + pieces + checking);
 }
 
 }  // namespace
