@@ -1,6 +1,6 @@
-// Strict JSON (RFC 8259), read where it stands: of the text only the places of its values are kept,
-// four bytes each, so that a large file costs little and a message can say the line. Duplicate keys,
-// which JSON libraries drop silently, are faults.
+// Strict JSON (RFC 8259), read where it stands: of the text only the places of its values are
+// kept, four bytes each, so that a large file costs little and a message can say the line.
+// Duplicate keys, which JSON libraries drop silently, are faults.
 #pragma once
 
 #include <cstddef>
@@ -181,7 +181,8 @@ inline std::size_t JsonValue::end() const {
 
 // The text must outlive the document. A byte order mark is passed over. Throws Error, one line, at
 // the first fault: not JSON, a key twice in one object, nesting beyond `deepest_nesting`, a number
-// beyond the largest double, not UTF-8, 4 GiB or more. Looks at `stop` once in `bytes_between_looks`.
+// beyond the largest double, not UTF-8, 4 GiB or more. Looks at `stop` at least once in
+// `bytes_between_looks`.
 [[nodiscard]] JsonDocument parse_json(const SourceText& source, const Stop& stop = {});
 
 }  // namespace ivory

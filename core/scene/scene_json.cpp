@@ -48,9 +48,9 @@ constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
 // The kinds of objects that a scene is made of.
 struct ObjectFormat {
-    std::string_view name;   // "a scene"
-    Words keys;              // all that it may have
-    Words needs;             // those that it must have
+    std::string_view name;  // "a scene"
+    Words keys;             // all that it may have
+    Words needs;            // those that it must have
 };
 
 constexpr ObjectFormat scene_format{"a scene", scene_keys, scene_needs};

@@ -10,8 +10,8 @@ namespace ivory {
 // is.
 using Stop = std::function<void()>;
 
-// How far such work gets at most between two looks: bytes of a text or file, values or elements of a
-// scene. Either takes a few milliseconds.
+// How far such work gets at most between two looks: bytes of a text or file, values or elements of
+// a scene. Either takes a few milliseconds.
 inline constexpr std::size_t bytes_between_looks = std::size_t{1} << 20;
 inline constexpr std::size_t values_between_looks = std::size_t{1} << 12;
 
