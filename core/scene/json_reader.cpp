@@ -558,7 +558,7 @@ std::size_t end_of_piece(std::string_view text, std::size_t start) {
     for (std::size_t back = 0; back < 4; ++back) {
         if (starts_character(text[end - back])) return end - back;
     }
-    return end;  // behind four bytes of which none starts a character: one that is complete or wrong
+    return end;  // behind four bytes that start no character: it is complete or wrong
 }
 
 // The most entries that the text's index can have. Refuses bytes that stand in no text.
