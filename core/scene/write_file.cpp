@@ -104,19 +104,41 @@ void AtomicFile::write(std::string_view bytes) {
     }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::close_written() {
     // Some file systems report a failed write only here.
     const int descriptor = std::exchange(descriptor_, -1);
-    int error = ::close(descriptor) == 0 || errno == EINTR ? 0 : errno;
-    if (temporary_.empty()) {
-        if (error != 0) fail(error);
-        return;
-    }
-    if (error == 0 && ::rename(temporary_.c_str(), target_.c_str()) != 0) error = errno;
-    if (error != 0) {
+    if (::close(descriptor) != 0 && errno != EINTR) give_up(errno);
+}
+
+void AtomicFile::give_up(int error) {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    fail(error);
+}
+
+void AtomicFile::commit() {
+    close_written();
+    if (temporary_.empty()) return;
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
+}
+
+bool AtomicFile::commit_new() {
+    close_written();
+    if (temporary_.empty()) return true;
+    // Unlike a rename, a second name for a file never replaces another.
+    if (::link(temporary_.c_str(), target_.c_str()) == 0) {
         ::unlink(temporary_.c_str());
-        fail(error);
+        return true;
     }
+    if (errno != EEXIST) {
+        // A file system without second names: look, then rename.
+        struct stat status {};
+        if (::lstat(target_.c_str(), &status) != 0) {
+            if (::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
+            return true;
+        }
+    }
+    ::unlink(temporary_.c_str());
+    return false;
 }
 
 void AtomicFile::fail(int error) const {
@@ -128,6 +150,14 @@ void write_file(const fs::path& target, std::string_view bytes) {
     AtomicFile file(target);
     file.write(bytes);
     file.commit();
+}
+
+bool write_new_file(const fs::path& target, std::string_view bytes) {
+    struct stat status {};
+    if (::stat(target.c_str(), &status) == 0) return false;
+    AtomicFile file(target);
+    file.write(bytes);
+    return file.commit_new();
 }
 
 }  // namespace ivory

@@ -27,8 +27,12 @@ class AtomicFile {
 
     // Puts the file in its place; the last call. Throws Error.
     void commit();
+    // The same where nothing has the target's name yet, or a last call that throws all away: false.
+    [[nodiscard]] bool commit_new();
 
   private:
+    void close_written();
+    void give_up(int error);
     [[noreturn]] void fail(int error) const;
 
     std::string label_;                // what messages call the target
@@ -39,5 +43,9 @@ class AtomicFile {
 
 // All of `bytes` as the file `target`. Throws Error and leaves the target as it was.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
+
+// The same, but nothing is ever replaced: false where something has that name by now. A link to a
+// file that does not exist makes that file.
+[[nodiscard]] bool write_new_file(const std::filesystem::path& target, std::string_view bytes);
 
 }  // namespace ivory

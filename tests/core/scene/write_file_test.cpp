@@ -80,6 +80,32 @@ TEST(AtomicFile, ShowsNothingBeforeTheCommitAndAllOfItAfter) {
     EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"file"});
 }
 
+TEST(WriteNewFile, ReplacesNothing) {
+    const TemporaryFolder folder;
+    EXPECT_TRUE(write_new_file(folder / "file", "first"));
+    EXPECT_FALSE(write_new_file(folder / "file", "second"));
+    EXPECT_EQ(read_file(folder / "file"), "first");
+    fs::create_directory(folder / "taken");
+    EXPECT_FALSE(write_new_file(folder / "taken", "text"));
+    fs::create_symlink("file", folder / "link");
+    EXPECT_FALSE(write_new_file(folder / "link", "text"));
+    fs::create_symlink("pointed to", folder / "link to nothing");
+    EXPECT_TRUE(write_new_file(folder / "link to nothing", "text"));
+    EXPECT_EQ(read_file(folder / "pointed to"), "text");
+    EXPECT_EQ(names_in(folder.path()),
+              (std::set<std::string>{"file", "link", "link to nothing", "pointed to", "taken"}));
+}
+
+TEST(WriteNewFile, NotEvenWhatCameWhileItWasWritten) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder / "file");
+    file.write("mine");
+    std::ofstream(folder / "file") << "another's";
+    EXPECT_FALSE(file.commit_new());
+    EXPECT_EQ(read_file(folder / "file"), "another's");
+    EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"file"});
+}
+
 TEST(AtomicFile, WithoutACommitIsThrownAway) {
     const TemporaryFolder folder;
     std::ofstream(folder / "file") << "old";
