@@ -7,6 +7,7 @@
 #include <span>
 #include <variant>
 
+#include "app/viewer/same_picture.h"
 #include "core/math/direction.h"
 #include "core/render/tiles.h"
 
@@ -72,15 +73,28 @@ struct Difference {
 };
 
 Difference difference(std::span<const Element> before, std::span<const Element> after) {
-    while (!before.empty() && !after.empty() && before.front() == after.front()) {
+    while (!before.empty() && !after.empty() && looks_the_same(before.front(), after.front())) {
         before = before.subspan(1);
         after = after.subspan(1);
     }
-    while (!before.empty() && !after.empty() && before.back() == after.back()) {
+    while (!before.empty() && !after.empty() && looks_the_same(before.back(), after.back())) {
         before = before.first(before.size() - 1);
         after = after.first(after.size() - 1);
     }
     return {before, after};
+}
+
+// One element, the first or the last, has gone to the other end: sums differ in their last bits.
+bool is_moved(const Difference& changed) {
+    const auto same = [](std::span<const Element> a, std::span<const Element> b) {
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(), looks_the_same);
+    };
+    const std::size_t count = changed.before.size();
+    if (count < 2 || changed.after.size() != count) return false;
+    const auto moved = [&](std::span<const Element> a, std::span<const Element> b) {
+        return looks_the_same(a.front(), b.back()) && same(a.subspan(1), b.first(count - 1));
+    };
+    return moved(changed.before, changed.after) || moved(changed.after, changed.before);
 }
 
 }  // namespace
@@ -101,6 +115,7 @@ std::optional<std::vector<std::uint8_t>> touched_tiles(const Scene& before, cons
                                                        const std::vector<TileDirection>& tiles) {
     if (before.threshold != after.threshold) return std::nullopt;
     const Difference changed = difference(before.elements, after.elements);
+    if (is_moved(changed)) return std::vector<std::uint8_t>(tiles.size(), 0);
     if (changed.before.size() + changed.after.size() > most_changed) return std::nullopt;
 
     std::vector<Ball> balls;

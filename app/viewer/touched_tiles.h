@@ -22,7 +22,8 @@ struct TileDirection {
 [[nodiscard]] std::vector<TileDirection> tile_directions(const View& view, WindowSize size);
 
 // Not 0 for each tile that is touched, in the order of the tiles; nothing where every tile may be:
-// another threshold, or many elements changed. Cameras, lights and background are not looked at.
+// another threshold, or many elements changed. Names, cameras, lights and background are not looked
+// at, and one element that has gone to another place of the list touches none.
 //
 // Reach: where |F| > 1e-6 T. It is a matter of sight, not of proof: the session traces the other
 // tiles too before it calls a picture final.

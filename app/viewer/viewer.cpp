@@ -15,6 +15,7 @@
 #include "app/viewer/frame_texture.h"
 #include "app/viewer/handles.h"
 #include "app/viewer/overlay.h"
+#include "app/viewer/same_picture.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
 #include "core/render/image_file.h"
@@ -80,6 +81,7 @@ struct Viewer::Parts {
     ViewportMouse mouse;
 
     Asked asked;
+    std::shared_ptr<const Scene> same_as_asked;  // another scene with the picture of asked.scene
     // What an automatic view was made for; its camera is not looked at.
     std::optional<Asked> framed;
     std::optional<std::pair<Theme, double>> style;  // theme and scale that ImGui stands at
@@ -139,9 +141,15 @@ struct Viewer::Parts {
     }
 
     void ask_for_picture(const Input& input, Clock::time_point start) {
-        const Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
+        Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
+        // An edit that no picture shows is not waited for: the session goes on with the scene that it has.
+        const bool compared = wanted.scene == asked.scene || wanted.scene == same_as_asked;
+        if (!compared && asked.scene && same_picture(*asked.scene, *wanted.scene))
+            same_as_asked = wanted.scene;
+        if (wanted.scene == same_as_asked) wanted.scene = asked.scene;
         if (wanted == asked) return;
         asked = wanted;
+        same_as_asked = nullptr;
         edited = start;
         session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start});
     }

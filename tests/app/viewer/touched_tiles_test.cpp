@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "app/viewer/same_picture.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
 
@@ -66,6 +67,53 @@ TEST(TouchedTiles, TheSameSceneTouchesNone) {
     const auto touched = touched_tiles(scene, scene, camera().position, directions);
     ASSERT_TRUE(touched.has_value());
     EXPECT_EQ(std::count(touched->begin(), touched->end(), 1), 0);
+}
+
+TEST(TouchedTiles, ANameOrAnotherPlaceInTheListTouchesNone) {
+    const auto directions = tile_directions(make_view(camera()), size);
+    const auto touches = [&](const Scene& before, const Scene& after) {
+        const auto touched = touched_tiles(before, after, camera().position, directions);
+        return !touched || std::count(touched->begin(), touched->end(), 1) > 0;
+    };
+    Scene scene = three_elements();
+    for (int i = 0; i < 20; ++i) scene.elements.push_back(scene.elements[0]);
+    for (std::size_t i = 0; i < scene.elements.size(); ++i)
+        scene.elements[i].width = 1 + 0.01 * static_cast<double>(i);
+    Scene after = scene;
+    after.elements[1].name = "heart";
+    EXPECT_FALSE(touches(scene, after));
+    std::rotate(after.elements.begin(), after.elements.begin() + 1, after.elements.end());
+    EXPECT_FALSE(touches(scene, after));
+    EXPECT_FALSE(touches(after, scene));
+    after.elements[4].width = 3;
+    EXPECT_TRUE(touches(scene, after));
+}
+
+TEST(SamePicture, OnlyWhatIsSeenInOrderCounts) {
+    const Scene scene = three_elements();
+    const auto with = [&](auto change) {
+        Scene changed = scene;
+        change(changed);
+        return same_picture(scene, changed);
+    };
+    EXPECT_TRUE(with([](Scene&) {}));
+    EXPECT_TRUE(with([](Scene& s) { s.elements[0].name = "heart"; }));
+    EXPECT_TRUE(with([](Scene& s) { s.camera = camera(); }));
+    EXPECT_TRUE(with([](Scene& s) { s.lights = default_lights(); }));
+    EXPECT_TRUE(with([](Scene& s) {
+        Element hidden = s.elements[0];
+        hidden.visible = false;
+        s.elements.insert(s.elements.begin() + 1, hidden);
+        s.elements.push_back(hidden);
+    }));
+    EXPECT_FALSE(with([](Scene& s) { s.threshold = 0.125; }));
+    EXPECT_FALSE(with([](Scene& s) { s.background.x = 0.5; }));
+    EXPECT_FALSE(with([](Scene& s) { s.lights.emplace(); }));
+    EXPECT_FALSE(with([](Scene& s) { s.elements[1].visible = false; }));
+    EXPECT_FALSE(with([](Scene& s) { s.elements[1].color.x = 0.125; }));
+    EXPECT_FALSE(with([](Scene& s) { s.elements[1].strength = 2; }));
+    EXPECT_FALSE(with([](Scene& s) { s.elements.pop_back(); }));
+    EXPECT_FALSE(with([](Scene& s) { std::swap(s.elements[0], s.elements[1]); }));
 }
 
 TEST(TouchedTiles, AnElementAroundTheEyeTouchesAll) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -119,6 +120,67 @@ TEST_P(InMemory, AtOtherSizesAndScalesToo) {
     EXPECT_TRUE(viewport_is_render(driven));
     EXPECT_EQ(driven.state().window, (WindowSize{641, 377}));
     driven.play(R"({"key": "tab"})");
+    EXPECT_TRUE(viewport_is_render(driven));
+}
+
+TEST_P(InMemory, WhatNoPictureShowsStartsNone) {
+    const auto context = context_or_skip({760, 420});
+    if (!context) return;
+    tests::TemporaryFolder folder;
+    Driven driven(*context, {760, 420});
+    driven.play(R"({"select": "point 2"}
+                   {"widget": "element.visible"}
+                   {"wait": "final"})");
+    const SessionTotals before = driven.viewer().totals();
+    const PictureState picture = driven.state().picture;
+    const auto scene = [&] { return driven.state().document.scene_value(); };
+    const auto starts_none = [&](const std::string& line) {
+        SCOPED_TRACE(line);
+        const auto scene_before = scene();
+        driven.play(line);
+        EXPECT_TRUE(driven.viewer().final());
+        driven.play("{\"frames\": 4}");
+        EXPECT_EQ(driven.viewer().totals().begun, before.begun);
+        EXPECT_EQ(driven.state().picture.hit, picture.hit);
+        EXPECT_EQ(driven.state().picture.miss, picture.miss);
+        EXPECT_EQ(driven.state().picture.milliseconds, picture.milliseconds);
+        return scene() != scene_before;
+    };
+    EXPECT_TRUE(starts_none(R"({"widget": "element.name", "set": "hidden"})"));
+    EXPECT_TRUE(starts_none(R"({"widget": "element.position.x", "set": 0.125})"));
+    EXPECT_TRUE(starts_none(R"({"key": "ctrl+d"})"));
+    EXPECT_TRUE(starts_none(R"({"key": "delete"})"));
+    EXPECT_FALSE(starts_none(R"({"select": "point 1"})"));
+    EXPECT_TRUE(starts_none(R"({"widget": "element.name", "set": "first"})"));
+    EXPECT_TRUE(starts_none(R"({"key": "ctrl+z"})"));
+    EXPECT_FALSE(starts_none("{\"save\": \"" + (folder / "saved.ivory.json").string() + "\"}"));
+    EXPECT_FALSE(starts_none(R"({"key": "s"})"));
+    driven.play(R"({"widget": "element.width", "set": 0.9})");
+    EXPECT_TRUE(viewport_is_render(driven));
+    EXPECT_EQ(driven.viewer().totals().begun, before.begun + 1);
+}
+
+// The last bits of the sums may differ, so that all is traced anew; nothing of it is seen.
+TEST_P(InMemory, AnotherOrderIsTracedAnewButShowsNothingElseMeanwhile) {
+    const auto context = context_or_skip({760, 420});
+    if (!context) return;
+    Driven driven(*context, {760, 420});
+    driven.play(R"({"wait": "final"}
+                   {"select": "point 1"})");
+    const WindowRect viewport = driven.state().viewport;
+    driven.viewer().hide_overlay(true);
+    driven.play("{\"frames\": 1}");
+    const std::vector<Rgba8> before = colors_of(driven.viewer().read_back(), viewport);
+    driven.play(R"({"widget": "element.down"})");
+    for (int frame = 0; frame < 400 && !driven.viewer().final(); ++frame) {
+        driven.play("{\"frames\": 1}");
+        const std::vector<Rgba8> now = colors_of(driven.viewer().read_back(), viewport);
+        for (std::size_t p = 0; p < now.size(); ++p) {
+            ASSERT_LE(std::abs(now[p].r - before[p].r), 1);
+            ASSERT_LE(std::abs(now[p].g - before[p].g), 1);
+            ASSERT_LE(std::abs(now[p].b - before[p].b), 1);
+        }
+    }
     EXPECT_TRUE(viewport_is_render(driven));
 }
 
