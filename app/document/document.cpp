@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/scene/read_file.h"
 #include "core/scene/scene_json.h"
 
 namespace ivory {
@@ -11,6 +12,19 @@ namespace {
 // So many elements are kept in all the scenes of the history together, about 300 MB; a scene of a
 // few hundred elements can be undone ten thousand times.
 constexpr std::size_t most_elements_kept = 2'000'000;
+
+struct SceneFile {
+    Document::SceneValue scene;
+    std::optional<FileStamp> stamp;
+};
+
+SceneFile read_scene_file(const std::filesystem::path& path, const Stop& stop) {
+    // Before it is read: what is written meanwhile is seen as a change later.
+    std::optional<FileStamp> stamp = path == "-" ? std::nullopt : FileStamp::of(path);
+    const std::string bytes = read_file(path, stop);
+    if (stamp) stamp->set_contents(bytes);
+    return {std::make_shared<const Scene>(parse_scene(bytes, file_label(path), stop)), stamp};
+}
 
 }  // namespace
 
@@ -22,7 +36,9 @@ Document::Document() {
 
 Document Document::open(const std::filesystem::path& path, const Stop& stop) {
     Document document;
-    document.current_ = std::make_shared<const Scene>(read_scene(path, stop));
+    const SceneFile file = read_scene_file(path, stop);
+    document.current_ = file.scene;
+    document.stamp_ = file.stamp;
     document.saved_ = document.current_;
     document.history_.front().scene = document.current_;
     document.path_ = path;
@@ -110,8 +126,23 @@ bool Document::redo() {
     return true;
 }
 
-void Document::mark_saved(const std::filesystem::path& path) {
+void Document::mark_saved(const std::filesystem::path& path, std::string_view bytes) {
     path_ = path;
+    stamp_ = FileStamp::of(path);
+    if (stamp_) stamp_->set_contents(bytes);
+    saved_ = current_;
+    dirty_ = false;
+}
+
+OnDisk Document::on_disk() const {
+    return path_ && stamp_ ? compare_with_disk(*path_, *stamp_) : OnDisk::same;
+}
+
+void Document::reload() {
+    end_drag();
+    const SceneFile file = read_scene_file(path_.value(), {});
+    stamp_ = file.stamp;
+    if (*file.scene != *current_) push("Reload", file.scene, selected_);
     saved_ = current_;
     dirty_ = false;
 }

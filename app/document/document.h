@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/document/file_stamp.h"
 #include "core/scene/scene.h"
 #include "core/scene/stop.h"
 
@@ -52,8 +54,14 @@ class Document {
     [[nodiscard]] const std::optional<std::filesystem::path>& path() const { return path_; }
     // The scene differs from what was last opened or saved.
     [[nodiscard]] bool dirty() const { return dirty_; }
-    // The scene has just been written there.
-    void mark_saved(const std::filesystem::path& path);
+    // The scene has just been written there, as these bytes.
+    void mark_saved(const std::filesystem::path& path, std::string_view bytes);
+    // Whether the file at `path` still is what was last opened or saved; `same` where there is no path
+    // or it stands for standard input.
+    [[nodiscard]] OnDisk on_disk() const;
+    // The scene of the file as it stands now, as an entry of the history: what was there before comes
+    // back by undo. Not dirty then. Throws Error, and nothing is changed.
+    void reload();
 
     // Kept valid through edits, undo and redo.
     [[nodiscard]] Selection selected() const { return selected_; }
@@ -79,6 +87,7 @@ class Document {
     SceneValue saved_;
     bool dirty_ = false;
     std::optional<std::filesystem::path> path_;
+    std::optional<FileStamp> stamp_;  // of the file at path_, when it was last read or written
     Selection selected_;
 };
 

@@ -63,18 +63,6 @@ Box3 box_of_all(const Scene& scene) {
     return box;
 }
 
-std::filesystem::path free_screenshot_path(const ViewerState& state) {
-    namespace fs = std::filesystem;
-    const auto& scene = state.document.path();
-    const std::string name = scene ? scene->filename().string() : "untitled";
-    const std::string stem = name.substr(0, name.find('.'));
-    std::error_code ignored;
-    for (int n = 1;; ++n) {
-        fs::path path = (stem.empty() ? "ivory" : stem) + "-" + std::to_string(n) + ".png";
-        if (!fs::exists(path, ignored)) return path;
-    }
-}
-
 void remove_selected(ViewerState& state) {
     Document& document = state.document;
     const std::size_t element = *document.selected();
@@ -228,6 +216,18 @@ void run(ViewerState& state, Action action) {
         case Action::help:
             state.help_shown = !state.help_shown;
             return;
+    }
+}
+
+std::filesystem::path free_screenshot_path(const ViewerState& state) {
+    namespace fs = std::filesystem;
+    const auto& scene = state.document.path();
+    const std::string name = scene ? scene->filename().string() : "untitled";
+    const std::string stem = name.substr(0, name.find('.'));
+    std::error_code ignored;
+    for (int n = 1;; ++n) {
+        fs::path path = (stem.empty() ? "ivory" : stem) + "-" + std::to_string(n) + ".png";
+        if (!fs::exists(path, ignored)) return path;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -63,6 +64,9 @@ struct ActionInfo {
 
 // Nothing where it is not possible.
 void run(ViewerState& state, Action action);
+
+// In the current folder, called after the scene's file and a number; nothing has that name yet.
+[[nodiscard]] std::filesystem::path free_screenshot_path(const ViewerState& state);
 
 // A new element where the orbit has its centre, selected.
 void add_element(ViewerState& state, ElementShape shape);

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* browser_id = "Files";
 constexpr const char* extension = ".ivory.json";
+constexpr const char* replace_label = "Replace\xE2\x80\xA6";  // a question follows
 
 bool is_scene_name(const std::string& name) { return name.ends_with(".json"); }
 
@@ -56,7 +57,7 @@ void begin(ViewerState& state, FileBrowser::Mode mode) {
     const auto& path = state.document.path();
     browser = {};
     browser.mode = mode;
-    browser.just_opened = true;
+    browser.just_opened = browser.name_wanted = true;
     std::error_code ignored;
     read_folder(browser,
                 path && path->has_parent_path() ? path->parent_path() : fs::current_path(ignored));
@@ -65,9 +66,8 @@ void begin(ViewerState& state, FileBrowser::Mode mode) {
             path && *path != "-" ? path->filename().string() : std::string("untitled") + extension;
 }
 
-// What the name and the folder stand for, its ending added where it is to be saved.
-fs::path chosen_path(const FileBrowser& browser) {
-    std::string name = browser.name;
+// What a name stands for in the folder, its ending added where it is to be saved.
+fs::path chosen_path(const FileBrowser& browser, std::string name) {
     if (browser.mode == FileBrowser::Mode::save && !name.ends_with(".json")) name += extension;
     return browser.folder / name;
 }
@@ -76,15 +76,17 @@ fs::path chosen_path(const FileBrowser& browser) {
 bool accept(ViewerState& state) {
     FileBrowser& browser = state.panels.browser;
     if (browser.name.empty()) return false;
+    browser.fault.clear();
     std::error_code ignored;
     if (const fs::path folder = browser.folder / browser.name; fs::is_directory(folder, ignored)) {
         read_folder(browser, folder);
         browser.name.clear();
         return false;
     }
-    const fs::path path = chosen_path(browser);
+    const fs::path path = chosen_path(browser, browser.name);
     if (browser.mode == FileBrowser::Mode::save) {
-        if (save_and_go_on(state, path, browser.after)) return true;
+        state.message = {};
+        if (save_as(state, path, browser.after)) return true;
         browser.fault = state.message.text;
         return false;
     }
@@ -155,36 +157,46 @@ void draw_contents(ViewerState& state) {
                         ImGui::GetTextLineHeightWithSpacing() + px(state, 8);
     bool done = draw_entries(state, ImGui::GetContentRegionAvail().y - below);
 
+    // Until the field has the keys: ImGui gives them a frame after they were asked for.
+    const std::string& typed = state.panels.text.id;
+    browser.name_wanted = browser.name_wanted && saving && typed != "browser.name";
     text_field(state, "browser.name", browser.name, field_width(), "file name",
-               browser.just_opened && saving);
+               browser.name_wanted);
     // Who went on typing saves with Enter; who clicked into a field first leaves it with Enter.
     if (ImGui::IsItemClicked()) browser.name_clicked = true;
-    const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+    // Keys that were pressed before the browser was seen, or that answer a question, are not its own.
+    const bool has_keys = !browser.just_opened && !state.panels.file_question;
+    const bool enter =
+        has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
     done |= enter && was_typed != "browser.path" &&
             !(was_typed == "browser.name" && browser.name_clicked);
     if (enter) browser.name_clicked = false;
+    // as it stands in the field, entered or not
+    const std::string name = typed == "browser.name" ? state.panels.text.text : browser.name;
     std::error_code ignored;
-    const bool replaces = saving && fs::is_regular_file(chosen_path(browser), ignored);
+    const bool replaces = saving && !name.empty() &&
+                          !fs::is_directory(browser.folder / name, ignored) &&
+                          fs::is_regular_file(chosen_path(browser, name), ignored);
     if (!browser.fault.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).x);
         ImGui::TextUnformatted(browser.fault.c_str());
         ImGui::PopStyleColor();
     } else if (replaces) {
-        ImGui::TextDisabled("There is such a file: it will be replaced.");
+        ImGui::TextDisabled("There is such a file: it is replaced after a question.");
     } else {
         ImGui::TextUnformatted("");
     }
 
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - spacing);
     const bool cancel = text_button(state, "browser.cancel", "Cancel", button) ||
-                        (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
+                        (has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
                          state.panels.text.id.empty());
     ImGui::SameLine();
     done |= text_button(state, "browser.ok",
-                        replaces ? "Replace"
+                        replaces ? replace_label
                         : saving ? "Save"
                                  : "Open",
-                        button, !browser.name.empty(), true);
+                        button, !name.empty(), true);
     browser.just_opened = false;
     if (cancel || (done && accept(state))) browser.mode = FileBrowser::Mode::closed;
 }
@@ -205,6 +217,7 @@ void draw_file_browser(ViewerState& state) {
         ImGui::OpenPopup(browser_id);
     if (!begin_dialog(state, browser_id, px(state, 640), px(state, 480))) return;
     if (browser.mode != FileBrowser::Mode::closed) draw_contents(state);
+    if (browser.mode != FileBrowser::Mode::closed) draw_file_question(state);
     if (browser.mode == FileBrowser::Mode::closed) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }

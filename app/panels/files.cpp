@@ -6,8 +6,10 @@
 #include "core/field/field.h"
 #include "core/render/camera.h"
 #include "core/scene/error.h"
+#include "core/scene/read_file.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"
+#include "core/scene/write_file.h"
 
 namespace ivory {
 
@@ -21,6 +23,9 @@ void take_document(ViewerState& state, Document document, const Camera& camera, 
     state.panels.dragged = {};
     state.panels.row_shown.reset();
     state.panels.ranged.reset();
+    // neither goes on about another document
+    state.panels.file_question.reset();
+    state.panels.browser.mode = FileBrowser::Mode::closed;
     state.message = {};
 }
 
@@ -31,11 +36,31 @@ void ask_or_perform(ViewerState& state, Pending pending) {
         return;
     }
     state.panels.question = std::move(pending);
+    state.panels.file_question.reset();
+    state.panels.answer.reset();
     state.panels.browser.mode = FileBrowser::Mode::closed;
 }
 
 std::string shown_name(const std::filesystem::path& path) {
     return printable(path.filename().string(), 80);
+}
+
+void ask(ViewerState& state, FileQuestion question) {
+    state.panels.file_question = std::move(question);
+    state.panels.answer.reset();
+}
+
+void saved(ViewerState& state, const std::filesystem::path& path, std::string_view bytes,
+           const std::optional<Pending>& after) {
+    state.document.mark_saved(path, bytes);
+    state.say("Saved " + shown_name(path));
+    if (after) perform(state, *after);
+}
+
+// The scene as it is written.
+std::string scene_bytes(ViewerState& state) {
+    state.document.end_drag();
+    return write_scene(state.scene_with_view());
 }
 
 }  // namespace
@@ -50,8 +75,9 @@ void open_scene(ViewerState& state, const std::filesystem::path& path) {
 }
 
 void save_scene(ViewerState& state, const std::filesystem::path& path) {
-    save_scene(state.scene_with_view(), path);
-    state.document.mark_saved(path);
+    const std::string bytes = scene_bytes(state);
+    write_file(path, bytes);
+    state.document.mark_saved(path, bytes);
 }
 
 void request_open(ViewerState& state, const std::filesystem::path& path) {
@@ -87,25 +113,85 @@ void perform(ViewerState& state, const Pending& pending) {
     }
 }
 
-bool save_and_go_on(ViewerState& state, const std::filesystem::path& path,
-                    std::optional<Pending> after) {
-    state.document.end_drag();
+bool save_as(ViewerState& state, const std::filesystem::path& path, std::optional<Pending> after) {
     try {
-        save_scene(state, path);
+        std::error_code error;
+        if (const auto kind = std::filesystem::status(path, error).type();
+            kind != std::filesystem::file_type::regular &&
+            kind != std::filesystem::file_type::not_found &&
+            kind != std::filesystem::file_type::none)
+            throw Error(file_label(path) + ": is not a file that scenes are kept in; name another");
+        const std::string bytes = scene_bytes(state);
+        if (!write_new_file(path, bytes)) {
+            ask(state, {FileQuestion::Kind::replace, path, FileStamp::of(path), std::move(after)});
+            return false;
+        }
+        saved(state, path, bytes, after);
+        return true;
     } catch (const Error& error) {
         state.say_error(error.what());
         return false;
     }
-    state.say("Saved " + shown_name(path));
-    if (after) perform(state, *after);
-    return true;
+}
+
+bool overwrite(ViewerState& state) {
+    FileQuestion question = *std::exchange(state.panels.file_question, std::nullopt);
+    const std::optional<FileStamp> now = FileStamp::of(question.path);
+    if (now && (!question.seen || compare_with_disk(question.path, *question.seen) != OnDisk::same)) {
+        question.seen = now;
+        question.again = true;
+        ask(state, std::move(question));
+        return false;
+    }
+    try {
+        const std::string bytes = scene_bytes(state);
+        write_file(question.path, bytes);
+        saved(state, question.path, bytes, question.after);
+        return true;
+    } catch (const Error& error) {
+        state.say_error(error.what());
+        return false;
+    }
+}
+
+void reload(ViewerState& state) {
+    state.panels.file_question.reset();
+    try {
+        state.document.reload();
+    } catch (const Error& error) {
+        state.say_error(error.what());
+        return;
+    }
+    if (const std::optional<Camera>& camera = state.document.scene().camera)
+        state.view = {*camera, false};
+    state.say("Reloaded " + shown_name(*state.document.path()) + "; Ctrl+Z brings back what was here");
 }
 
 void save_or_ask(ViewerState& state, std::optional<Pending> after) {
-    if (state.document.path() && *state.document.path() != "-") {
-        save_and_go_on(state, *state.document.path(), std::move(after));
-    } else {
+    const auto& file = state.document.path();
+    if (!file || *file == "-") {
         browse_to_save(state, std::move(after));
+        return;
+    }
+    const std::filesystem::path path = *file;
+    const OnDisk on_disk = state.document.on_disk();
+    if (on_disk == OnDisk::changed) {
+        ask(state, {FileQuestion::Kind::changed, path, FileStamp::of(path), std::move(after)});
+        return;
+    }
+    try {
+        const std::string bytes = scene_bytes(state);
+        if (on_disk == OnDisk::same) {
+            write_file(path, bytes);
+        } else if (!write_new_file(path, bytes)) {
+            ask(state, {FileQuestion::Kind::changed, path, FileStamp::of(path), std::move(after)});
+            return;
+        }
+        saved(state, path, bytes, after);
+        if (on_disk == OnDisk::gone && !after)
+            state.say("Saved " + shown_name(path) + " anew: the file had been deleted");
+    } catch (const Error& error) {
+        state.say_error(error.what());
     }
 }
 

@@ -41,7 +41,7 @@ void press(ViewerState& state, const KeyPress& press) {
 void handle_keys(ViewerState& state, const Input& input) {
     // keys belong to a drag, a text field or a dialog first
     if (state.document.dragging() || ImGui::GetIO().WantTextInput) return;
-    if (state.panels.question || state.panels.browser.mode != FileBrowser::Mode::closed) return;
+    if (state.panels.dialog_open()) return;
     // A menu or a colour picker has the plain keys, Escape among them: one can undo and save with it open.
     const bool popup =
         ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);

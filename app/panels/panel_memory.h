@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/document/file_stamp.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
@@ -43,6 +44,19 @@ struct Pending {
     std::filesystem::path path;  // of open
 };
 
+// What waits for the answer to a question about the file that is to be written.
+struct FileQuestion {
+    enum class Kind : std::uint8_t {
+        replace,  // there is a file of that name
+        changed,  // the document's own, by another program
+    };
+    Kind kind = Kind::replace;
+    std::filesystem::path path;
+    std::optional<FileStamp> seen;  // the file that the question is about
+    std::optional<Pending> after;   // when it has been saved
+    bool again = false;             // the file has changed since it was asked about
+};
+
 struct FileBrowser {
     enum class Mode : std::uint8_t { closed, open, save };
     struct Entry {
@@ -55,6 +69,7 @@ struct FileBrowser {
     std::string folder_text, name;
     std::string fault;  // one line; empty: none
     bool just_opened = false, name_clicked = false;
+    bool name_wanted = false;  // the name is to be typed, all of it selected
     std::optional<Pending> after;  // when it has been saved
 };
 
@@ -66,8 +81,15 @@ struct PanelMemory {
     bool name_wanted = false;  // the name of the selected element is to be typed
 
     std::optional<Pending> question;
-    bool question_shown = false;
+    std::optional<FileQuestion> file_question;
+    // Of the question that is shown: one at a time.
+    std::optional<std::size_t> answer;  // the one that Enter gives; none: not shown yet
     FileBrowser browser;
+
+    // Something is asked for, and keys are its answer.
+    [[nodiscard]] bool dialog_open() const {
+        return question || file_question || browser.mode != FileBrowser::Mode::closed;
+    }
 
     std::optional<std::size_t> row_shown;  // the selection that the list last scrolled to
 

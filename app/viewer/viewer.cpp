@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/panels/actions.h"
 #include "app/panels/panels.h"
 #include "app/platform/imgui_input.h"
 #include "app/platform/imgui_renderer.h"
@@ -183,9 +184,11 @@ struct Viewer::Parts {
 
     void fulfil_wishes(const Viewer& viewer) {
         if (!state.screenshot_wanted) return;
-        const std::filesystem::path path = *std::exchange(state.screenshot_wanted, std::nullopt);
+        std::filesystem::path path = *std::exchange(state.screenshot_wanted, std::nullopt);
         try {
-            write_file(path, png_bytes(viewer.read_back()));
+            const std::string bytes = png_bytes(viewer.read_back());
+            // another program may have taken the name since
+            while (!write_new_file(path, bytes)) path = free_screenshot_path(state);
             state.say("Screenshot: " + path.string());
         } catch (const Error& error) {
             state.say_error(error.what());

@@ -167,7 +167,7 @@ TEST(Document, IsDirtyWhereTheSceneDiffersFromTheFile) {
     document.undo();
     EXPECT_FALSE(document.dirty());
     document.redo();
-    document.mark_saved(folder / "other.ivory.json");
+    document.mark_saved(folder / "other.ivory.json", "");
     EXPECT_FALSE(document.dirty());
     EXPECT_EQ(document.path(), folder / "other.ivory.json");
     document.undo();

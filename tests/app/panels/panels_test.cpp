@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -558,6 +561,290 @@ TEST(Files, TheBrowserSavesUnderANewNameAndOpensAnother) {
     bench.turns(2);
     bench.click("browser.ok");
     EXPECT_EQ(bench.state.document.path(), folder / "deeper" / "third.ivory.json");
+}
+
+// An untitled scene of two points, to be saved into a folder where other.ivory.json is another one.
+class SaveAs : public testing::Test {
+  protected:
+    tests::TemporaryFolder folder;
+    const std::filesystem::path other = folder / "other.ivory.json";
+    const std::filesystem::path before_test = std::filesystem::current_path();
+    std::optional<ViewerBench> kept;
+
+    SaveAs() {
+        std::filesystem::create_directory(folder / "deeper");
+        save_scene(figure(), other);
+        std::filesystem::current_path(folder.path());
+        kept.emplace(points(2));
+    }
+    ~SaveAs() override { std::filesystem::current_path(before_test); }
+
+    ViewerBench& bench() { return *kept; }
+    void begin() {
+        bench().key(Key::s, {.shift = true, .control = true});
+        bench().turns(3);
+    }
+    void type_name(std::string_view name) {
+        bench().type(name);
+        bench().key(Key::enter);
+        bench().turns(3);
+    }
+    [[nodiscard]] bool asked() const { return kept->state.widgets.find("replace.replace") != nullptr; }
+    [[nodiscard]] bool other_stands() const { return read_scene(other).elements == figure().elements; }
+    [[nodiscard]] bool replaced() const { return read_scene(other).elements == points(2).elements; }
+};
+
+TEST_F(SaveAs, EveryWayToNameAFileThatExistsAsksFirst) {
+    std::filesystem::create_symlink("other.ivory.json", folder / "link.ivory.json");
+    for (const std::string name :
+         {"other.ivory.json", "other", "deeper/../other", "link", "link.ivory.json"}) {
+        SCOPED_TRACE(name);
+        begin();
+        type_name(name);
+        EXPECT_TRUE(asked());
+        EXPECT_TRUE(other_stands());
+        bench().key(Key::enter);  // which is no consent
+        EXPECT_FALSE(asked());
+        EXPECT_TRUE(other_stands());
+        bench().key(Key::escape);
+        bench().key(Key::escape);
+        EXPECT_EQ(bench().state.widgets.find("browser.ok"), nullptr);
+    }
+    begin();
+    type_name(other.string());
+    EXPECT_TRUE(asked());
+    bench().key(Key::escape);
+    EXPECT_NE(bench().state.widgets.find("browser.ok"), nullptr);
+    // the list, by button and by double click
+    bench().click("browser.entry.other.ivory.json");
+    bench().click("browser.ok");
+    EXPECT_TRUE(asked());
+    bench().click("replace.cancel");
+    const WindowPoint entry = bench().at("browser.entry.other.ivory.json");
+    bench().turns(60);
+    bench().move_to(entry);
+    for (int i = 0; i < 2; ++i) {
+        bench().press();
+        bench().release();
+    }
+    bench().turns(3);
+    EXPECT_TRUE(asked());
+    EXPECT_TRUE(other_stands());
+    EXPECT_FALSE(bench().state.document.path());
+    bench().click("replace.replace");
+    EXPECT_TRUE(replaced());
+    EXPECT_EQ(bench().state.document.path(), other);
+    EXPECT_FALSE(bench().state.document.dirty());
+    EXPECT_EQ(bench().state.widgets.find("browser.ok"), nullptr);
+}
+
+TEST_F(SaveAs, TheKeysCanReplaceToo) {
+    begin();
+    type_name("other");
+    ASSERT_TRUE(asked());
+    bench().key(Key::left);
+    bench().key(Key::enter);
+    EXPECT_TRUE(replaced());
+    EXPECT_FALSE(bench().state.panels.dialog_open());
+}
+
+TEST_F(SaveAs, ASecondTimeTheWholeNameIsSelectedToo) {
+    begin();
+    type_name("first");
+    EXPECT_TRUE(std::filesystem::exists(folder / "first.ivory.json"));
+    begin();
+    type_name("second");
+    EXPECT_EQ(bench().state.document.path(), folder / "second.ivory.json");
+    begin();
+    type_name("other");
+    ASSERT_TRUE(asked());
+    bench().key(Key::escape);
+    type_name("third");
+    EXPECT_EQ(bench().state.document.path(), folder / "third.ivory.json");
+    EXPECT_TRUE(other_stands());
+}
+
+TEST_F(SaveAs, WhatChangedWhileOneWasAskedIsAskedAboutAgain) {
+    begin();
+    type_name("other");
+    ASSERT_TRUE(asked());
+    save_scene(points(5), other);
+    bench().click("replace.replace");
+    EXPECT_TRUE(asked());
+    EXPECT_EQ(read_scene(other).elements.size(), 5u);
+    bench().click("replace.replace");
+    EXPECT_TRUE(replaced());
+}
+
+TEST_F(SaveAs, FoldersAndWhatIsNoFileAreNotReplaced) {
+    begin();
+    type_name("deeper");
+    EXPECT_EQ(bench().state.panels.browser.folder.filename(), "deeper");
+    bench().key(Key::escape);
+    bench().key(Key::escape);
+    std::filesystem::create_directory(folder / "taken.ivory.json");
+    begin();
+    type_name("taken");
+    EXPECT_NE(bench().state.panels.browser.fault.find("taken.ivory.json"), std::string::npos);
+    EXPECT_FALSE(asked());
+    EXPECT_TRUE(std::filesystem::is_directory(folder / "taken.ivory.json"));
+}
+
+TEST_F(SaveAs, TheEnterThatAnswersAQuestionNamesNoFile) {
+    request_quit(bench().state);
+    bench().turns(3);
+    bench().key(Key::enter);  // Save: the name is asked for
+    bench().turns(3);
+    EXPECT_NE(bench().state.widgets.find("browser.ok"), nullptr);
+    EXPECT_FALSE(bench().state.quit);
+    EXPECT_FALSE(std::filesystem::exists(folder / "untitled.ivory.json"));
+    bench().key(Key::enter);
+    EXPECT_TRUE(std::filesystem::exists(folder / "untitled.ivory.json"));
+    EXPECT_TRUE(bench().state.quit);
+}
+
+// A document of a file that another program writes to.
+class Disk : public testing::Test {
+  protected:
+    tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "scene.ivory.json";
+    ViewerBench bench;
+
+    Disk() {
+        Scene scene = figure();
+        save_scene(scene, file);
+        open_scene(bench.state, file);
+        bench.turns(2);
+        bench.enter("threshold", "0.75");
+    }
+    void save() {
+        bench.key(Key::s, {.control = true});
+        bench.turns(3);
+    }
+    [[nodiscard]] bool asked() const {
+        return bench.state.widgets.find("changed.overwrite") != nullptr;
+    }
+    [[nodiscard]] double threshold() const { return read_scene(file).threshold; }
+    void changed_by_another(double to) {
+        Scene scene = figure();
+        scene.threshold = to;
+        save_scene(scene, file);
+    }
+};
+
+TEST_F(Disk, WhatAnotherProgramWroteIsNotOverwrittenUnasked) {
+    changed_by_another(0.25);
+    save();
+    EXPECT_TRUE(asked());
+    EXPECT_EQ(threshold(), 0.25);
+    bench.key(Key::escape);
+    EXPECT_FALSE(asked());
+    EXPECT_TRUE(bench.state.document.dirty());
+    EXPECT_EQ(threshold(), 0.25);
+
+    save();
+    changed_by_another(0.125);  // while one is asked
+    bench.click("changed.overwrite");
+    EXPECT_TRUE(asked());
+    EXPECT_EQ(threshold(), 0.125);
+    bench.click("changed.overwrite");
+    EXPECT_FALSE(asked());
+    EXPECT_EQ(threshold(), 0.75);
+    EXPECT_FALSE(bench.state.document.dirty());
+    bench.enter("threshold", "0.5");
+    save();
+    EXPECT_EQ(threshold(), 0.5);  // it is one's own again
+}
+
+TEST_F(Disk, ReloadedTheEditsComeBackByUndo) {
+    changed_by_another(0.25);
+    save();
+    bench.click("changed.reload");
+    EXPECT_EQ(bench.scene().threshold, 0.25);
+    EXPECT_FALSE(bench.state.document.dirty());
+    bench.key(Key::z, {.control = true});
+    EXPECT_EQ(bench.scene().threshold, 0.75);
+    EXPECT_TRUE(bench.state.document.dirty());
+    save();
+    EXPECT_FALSE(asked());
+    EXPECT_EQ(threshold(), 0.75);
+}
+
+TEST_F(Disk, ABrokenFileIsNotReloaded) {
+    std::ofstream(file) << "{\"ivory\": 1,";
+    save();
+    bench.click("changed.reload");
+    EXPECT_TRUE(bench.state.message.error);
+    EXPECT_EQ(bench.scene().threshold, 0.75);
+    EXPECT_TRUE(bench.state.document.dirty());
+}
+
+TEST_F(Disk, SavedAsAnotherTheFileStands) {
+    changed_by_another(0.25);
+    save();
+    bench.click("changed.save_as");
+    bench.turns(3);
+    bench.type("mine");
+    bench.key(Key::enter);
+    bench.turns(3);
+    EXPECT_EQ(threshold(), 0.25);
+    EXPECT_EQ(read_scene(folder / "mine.ivory.json").threshold, 0.75);
+    EXPECT_EQ(bench.state.document.path(), folder / "mine.ivory.json");
+}
+
+TEST_F(Disk, AnotherTimeAloneIsNoChange) {
+    std::filesystem::last_write_time(
+        file, std::filesystem::last_write_time(file) + std::chrono::seconds(5));
+    save();
+    EXPECT_FALSE(asked());
+    EXPECT_EQ(threshold(), 0.75);
+    // nor is the same written anew
+    const Scene now = read_scene(file);
+    std::filesystem::remove(file);
+    save_scene(now, file);
+    bench.enter("threshold", "0.5");
+    save();
+    EXPECT_FALSE(asked());
+    EXPECT_EQ(threshold(), 0.5);
+}
+
+TEST_F(Disk, ADeletedFileIsSavedAnewWithAWord) {
+    std::filesystem::remove(file);
+    save();
+    EXPECT_EQ(threshold(), 0.75);
+    EXPECT_NE(bench.state.message.text.find("deleted"), std::string::npos);
+    std::filesystem::remove_all(folder.path());
+    bench.enter("threshold", "0.5");
+    save();
+    EXPECT_TRUE(bench.state.message.error);
+    EXPECT_TRUE(bench.state.document.dirty());
+}
+
+TEST_F(Disk, OnTheWayOutItIsAskedAboutToo) {
+    changed_by_another(0.25);
+    request_quit(bench.state);
+    bench.turns(3);
+    bench.click("unsaved.save");
+    EXPECT_TRUE(asked());
+    EXPECT_FALSE(bench.state.quit);
+    bench.click("changed.overwrite");
+    EXPECT_TRUE(bench.state.quit);
+    EXPECT_EQ(threshold(), 0.75);
+}
+
+TEST_F(Disk, AnotherDocumentEndsTheQuestion) {
+    save();
+    changed_by_another(0.25);
+    save();
+    ASSERT_TRUE(asked());
+    save_scene(points(2), folder / "points.ivory.json");
+    request_open(bench.state, folder / "points.ivory.json");
+    bench.turns(3);
+    EXPECT_FALSE(asked());
+    EXPECT_FALSE(bench.state.panels.dialog_open());
+    bench.enter("threshold", "0.5");  // nothing lies over the panels
+    EXPECT_EQ(bench.scene().threshold, 0.5);
+    EXPECT_EQ(threshold(), 0.25);
 }
 
 }  // namespace
