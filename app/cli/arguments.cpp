@@ -190,8 +190,12 @@ void add_viewer_options(CLI::App& app, ViewerArguments& viewer) {
     app.add_option("--screenshot", viewer.screenshot,
                    "with --headless: the whole window at the end")
         ->type_name("OUT.png");
-    add_value(app, "--size", "WxH", "of the window in pixels; default 1280x720",
-              [&viewer](const std::string& text) { read_size(text, viewer.width, viewer.height); });
+    add_value(app, "--size", "WxH",
+              "of the window in pixels; default 1280x720, or as the window was left",
+              [&viewer](const std::string& text) {
+                  read_size(text, viewer.width, viewer.height);
+                  viewer.size_given = true;
+              });
     app.add_flag("--no-settings", viewer.no_settings,
                  "neither reads nor writes the user's settings; implied by --headless");
     add_value(app, "--threads", "N", "worker threads; default: one for each processor",

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include "app/cli/interrupt.h"
+#include "app/panels/settings.h"
 #include "app/viewer/headless.h"
 #include "app/viewer/window_loop.h"
 #else
@@ -23,7 +24,9 @@ void run(const ViewerArguments& arguments) {
     }
     // The loop sleeps until the window has something to say: let the signal end the process as it would.
     for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
-    run_window({arguments.scene, size, arguments.threads});
+    run_window({arguments.scene, arguments.size_given ? std::optional(size) : std::nullopt,
+                arguments.threads,
+                arguments.no_settings ? std::nullopt : settings_path()});
 }
 
 #else

@@ -48,6 +48,9 @@ class WindowContext : public Context {
     // moves what has happened into `queue`.
     virtual void wait_events(EventQueue& queue, double seconds) = 0;
     virtual void set_title(const std::string& title) = 0;
+    // Of the window in points of the screen; where it is maximised, what it was before.
+    [[nodiscard]] virtual WindowSize points() const = 0;
+    [[nodiscard]] virtual bool maximised() const = 0;
     // HiDPI scale of the monitor it is on.
     [[nodiscard]] virtual double scale() const = 0;
     // Ends a `wait_events`. From any thread.
@@ -64,8 +67,9 @@ class WindowContext : public Context {
 [[nodiscard]] std::unique_ptr<MemoryContext> open_egl_context(WindowSize size);
 // The first of the two that opens; IVORY_HEADLESS_CONTEXT=osmesa or =egl in the environment chooses.
 [[nodiscard]] std::unique_ptr<MemoryContext> open_memory_context(WindowSize size);
-// A window on the display; without one the error says how to go on.
-[[nodiscard]] std::unique_ptr<WindowContext> open_window_context(WindowSize size,
+// A window on the display, `size` in points of the screen, no larger than the screen has room for; without
+// a display the error says how to go on.
+[[nodiscard]] std::unique_ptr<WindowContext> open_window_context(WindowSize size, bool maximised,
                                                                  const std::string& title);
 
 }  // namespace ivory

@@ -2,6 +2,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -82,7 +83,7 @@ std::string last_glfw_error() {
 
 class GlfwContext final : public WindowContext {
   public:
-    GlfwContext(WindowSize size, const std::string& title) {
+    GlfwContext(WindowSize size, bool maximised, const std::string& title) {
         if (glfwInit() == GLFW_FALSE)
             throw Error("there is no display to open a window on (" + last_glfw_error() +
                         "); `ivory render SCENE -o OUT.png` draws without one, `ivory SCENE "
@@ -94,7 +95,15 @@ class GlfwContext final : public WindowContext {
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
         glfwWindowHint(GLFW_DEPTH_BITS, 0);
         glfwWindowHint(GLFW_STENCIL_BITS, 0);
+        glfwWindowHint(GLFW_MAXIMIZED, maximised ? GLFW_TRUE : GLFW_FALSE);
         glfwWindowHintString(GLFW_X11_CLASS_NAME, "ivory");
+        if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor()) {
+            int x = 0, y = 0, width = 0, height = 0;
+            glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+            if (width > 0 && height > 0)
+                size = {std::min(size.width, width), std::min(size.height, height)};
+        }
+        restored_ = size;
         window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
         if (window_ == nullptr) {
             const std::string why = last_glfw_error();
@@ -136,6 +145,10 @@ class GlfwContext final : public WindowContext {
         queue_ = nullptr;
     }
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
+    WindowSize points() const override { return restored_; }
+    bool maximised() const override {
+        return glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
+    }
     double scale() const override {
         float x = 1, y = 1;
         glfwGetWindowContentScale(window_, &x, &y);
@@ -206,6 +219,11 @@ class GlfwContext final : public WindowContext {
         glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
             of(window).note(FilesDropped{{paths, paths + count}});
         });
+        glfwSetWindowSizeCallback(window_, [](GLFWwindow* window, int width, int height) {
+            const bool iconified = glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE;
+            if (width > 0 && height > 0 && !iconified && !of(window).maximised())
+                of(window).restored_ = {width, height};
+        });
         glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int width, int height) {
             of(window).note(Resized{{width, height}});
         });
@@ -226,6 +244,7 @@ class GlfwContext final : public WindowContext {
     }
 
     GLFWwindow* window_ = nullptr;
+    WindowSize restored_;  // points, while it is not maximised
     Gl gl_;
     EventQueue* queue_ = nullptr;
     Cursor cursor_ = Cursor::arrow;
@@ -234,8 +253,9 @@ class GlfwContext final : public WindowContext {
 
 }  // namespace
 
-std::unique_ptr<WindowContext> open_window_context(WindowSize size, const std::string& title) {
-    return std::make_unique<GlfwContext>(size, title);
+std::unique_ptr<WindowContext> open_window_context(WindowSize size, bool maximised,
+                                                   const std::string& title) {
+    return std::make_unique<GlfwContext>(size, maximised, title);
 }
 
 }  // namespace ivory

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "app/panels/panels.h"
+#include "app/panels/settings.h"
 #include "app/platform/context.h"
 #include "app/viewer/viewer.h"
 
@@ -34,10 +38,84 @@ void connect_clipboard(WindowContext& window) {
     };
 }
 
+// The user's settings on their way between the file and the viewer.
+class Keeper {
+  public:
+    explicit Keeper(const WindowSettings& settings) : file_(settings.user_settings) {
+        now_ = file_.read();
+        size_ = settings.size.value_or(WindowSize{now_.window_width, now_.window_height});
+        maximised_ = !settings.size && now_.window_maximised;
+    }
+
+    // The window to begin with.
+    [[nodiscard]] WindowSize size() const { return size_; }
+    [[nodiscard]] bool maximised() const { return maximised_; }
+
+    // Of a window that has just been opened.
+    void begin(ViewerState& state, const WindowContext& window) {
+        size_ = window.points();  // which may be less
+        state.theme = now_.theme;
+        state.panels_hidden = !now_.panels_shown;
+        state.skeleton_shown = now_.skeleton_shown;
+        say_complaint(state);
+    }
+
+    // After each frame: writes what has been set when the hand rests. Seconds until then; < 0: nothing is
+    // to be written.
+    double look(ViewerState& state, const WindowContext& window, Clock::time_point now) {
+        const UserSettings before = now_;
+        now_.theme = state.theme;
+        now_.panels_shown = !state.panels_hidden;
+        now_.skeleton_shown = state.skeleton_shown;
+        // what the user did to it, not what the command line or a small screen did
+        if (const WindowSize size = window.points(); size != size_) {
+            size_ = size;
+            now_.window_width = std::clamp(size.width, least_window_side, largest_window_side);
+            now_.window_height = std::clamp(size.height, least_window_side, largest_window_side);
+        }
+        if (const bool maximised = window.maximised(); maximised != maximised_)
+            now_.window_maximised = maximised_ = maximised;
+        if (now_ != before) due_ = now + rest;
+        if (!due_) return -1;
+        const double left = std::chrono::duration<double>(*due_ - now).count();
+        if (left > 0) return left;
+        write(state);
+        return -1;
+    }
+
+    void end(ViewerState& state) {
+        if (due_) write(state);
+    }
+
+  private:
+    static constexpr std::chrono::milliseconds rest{500};
+
+    void write(ViewerState& state) {
+        due_.reset();
+        file_.keep(now_);
+        say_complaint(state);
+    }
+
+    void say_complaint(ViewerState& state) {
+        const std::string complaint = file_.take_complaint();
+        if (complaint.empty()) return;
+        std::fprintf(stderr, "ivory: %s\n", complaint.c_str());
+        state.say_error(complaint);
+    }
+
+    SettingsFile file_;
+    UserSettings now_;
+    WindowSize size_;  // of the window, as last seen
+    bool maximised_ = false;
+    std::optional<Clock::time_point> due_;
+};
+
 }  // namespace
 
 void run_window(const WindowSettings& settings) {
-    const std::unique_ptr<WindowContext> window = open_window_context(settings.size, "Ivory");
+    Keeper keeper(settings);
+    const std::unique_ptr<WindowContext> window =
+        open_window_context(keeper.size(), keeper.maximised(), "Ivory");
     EventQueue events(window->size(), window->scale());
     ViewerSettings viewer_settings;
     viewer_settings.threads = settings.threads;
@@ -46,6 +124,7 @@ void run_window(const WindowSettings& settings) {
     Viewer viewer(*window, std::move(viewer_settings));
     connect_clipboard(*window);
     viewer.state().widgets.whole_lists = false;
+    keeper.begin(viewer.state(), *window);
     if (settings.scene) request_open(viewer.state(), *settings.scene);
 
     std::string title;
@@ -70,7 +149,10 @@ void run_window(const WindowSettings& settings) {
         }
         window->set_cursor(viewer.cursor());
         wait = viewer.next_frame_wanted();
+        if (const double due = keeper.look(viewer.state(), *window, Clock::now()); due >= 0)
+            wait = wait < 0 ? due : std::min(wait, due);
     }
+    keeper.end(viewer.state());
 }
 
 }  // namespace ivory

@@ -1,6 +1,7 @@
 // The viewer in a window.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,8 +12,9 @@ namespace ivory {
 struct WindowSettings {
     // A broken one leaves an empty window that says what is wrong.
     std::optional<std::string> scene;
-    WindowSize size{1280, 720};  // points of the screen
+    std::optional<WindowSize> size;  // points of the screen; without one: as it was left
     int threads = 1;
+    std::optional<std::filesystem::path> user_settings;  // none: neither read nor written
 };
 
 // Until the user closes it. Throws Error where there is no display or no OpenGL 3.3.
