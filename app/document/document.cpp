@@ -138,13 +138,15 @@ OnDisk Document::on_disk() const {
     return path_ && stamp_ ? compare_with_disk(*path_, *stamp_) : OnDisk::same;
 }
 
-void Document::reload() {
+bool Document::reload() {
     end_drag();
     const SceneFile file = read_scene_file(path_.value(), {});
     stamp_ = file.stamp;
-    if (*file.scene != *current_) push("Reload", file.scene, selected_);
+    const bool differs = *file.scene != *current_;
+    if (differs) push("Reload", file.scene, selected_);
     saved_ = current_;
     dirty_ = false;
+    return differs;
 }
 
 void Document::select(Selection element) {

@@ -60,8 +60,9 @@ class Document {
     // or it stands for standard input.
     [[nodiscard]] OnDisk on_disk() const;
     // The scene of the file as it stands now, as an entry of the history: what was there before comes
-    // back by undo. Not dirty then. Throws Error, and nothing is changed.
-    void reload();
+    // back by undo. Not dirty then. False where it is the same scene, and no entry is made. Throws
+    // Error, and nothing is changed.
+    bool reload();
 
     // Kept valid through edits, undo and redo.
     [[nodiscard]] Selection selected() const { return selected_; }

@@ -66,10 +66,21 @@ void begin(ViewerState& state, FileBrowser::Mode mode) {
             path && *path != "-" ? path->filename().string() : std::string("untitled") + extension;
 }
 
+// As it stands in the field, entered or not.
+std::string name_now(const ViewerState& state) {
+    const TypedText& typed = state.panels.text;
+    return typed.id == "browser.name" ? typed.text : state.panels.browser.name;
+}
+
 // What a name stands for in the folder, its ending added where it is to be saved.
 fs::path chosen_path(const FileBrowser& browser, std::string name) {
     if (browser.mode == FileBrowser::Mode::save && !name.ends_with(".json")) name += extension;
     return browser.folder / name;
+}
+
+// Whether the entry is what the name names.
+bool stands_for(const FileBrowser& browser, const std::string& name, const std::string& entry) {
+    return name == entry || (!name.empty() && chosen_path(browser, name) == browser.folder / entry);
 }
 
 // Goes into a folder; opens or saves a file. True where the browser is done.
@@ -105,7 +116,7 @@ bool draw_entry(ViewerState& state, const FileBrowser::Entry& entry) {
     const float height = ImGui::GetFrameHeight();
     ImGui::PushID(entry.name.c_str());
     const bool clicked = ImGui::Selectable(
-        "##entry", browser.name == entry.name,
+        "##entry", stands_for(browser, name_now(state), entry.name),
         ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups, {0, height});
     state.widgets.add("browser.entry." + entry.name, WidgetKind::row);
     const ImVec2 lo = ImGui::GetItemRectMin();
@@ -171,8 +182,7 @@ void draw_contents(ViewerState& state) {
     done |= enter && was_typed != "browser.path" &&
             !(was_typed == "browser.name" && browser.name_clicked);
     if (enter) browser.name_clicked = false;
-    // as it stands in the field, entered or not
-    const std::string name = typed == "browser.name" ? state.panels.text.text : browser.name;
+    const std::string name = name_now(state);
     std::error_code ignored;
     const bool replaces = saving && !name.empty() &&
                           !fs::is_directory(browser.folder / name, ignored) &&

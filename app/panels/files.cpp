@@ -156,15 +156,17 @@ bool overwrite(ViewerState& state) {
 
 void reload(ViewerState& state) {
     state.panels.file_question.reset();
+    bool differs = false;
     try {
-        state.document.reload();
+        differs = state.document.reload();
     } catch (const Error& error) {
         state.say_error(error.what());
         return;
     }
     if (const std::optional<Camera>& camera = state.document.scene().camera)
         state.view = {*camera, false};
-    state.say("Reloaded " + shown_name(*state.document.path()) + "; Ctrl+Z brings back what was here");
+    state.say("Reloaded " + shown_name(*state.document.path()) +
+              (differs ? "; Ctrl+Z brings back what was here" : ""));
 }
 
 void save_or_ask(ViewerState& state, std::optional<Pending> after) {

@@ -48,7 +48,7 @@ class WindowContext : public Context {
     // moves what has happened into `queue`.
     virtual void wait_events(EventQueue& queue, double seconds) = 0;
     virtual void set_title(const std::string& title) = 0;
-    // Of the window in points of the screen; where it is maximised, what it was before.
+    // Of the window, in points of the screen.
     [[nodiscard]] virtual WindowSize points() const = 0;
     [[nodiscard]] virtual bool maximised() const = 0;
     // HiDPI scale of the monitor it is on.

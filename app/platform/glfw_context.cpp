@@ -103,7 +103,6 @@ class GlfwContext final : public WindowContext {
             if (width > 0 && height > 0)
                 size = {std::min(size.width, width), std::min(size.height, height)};
         }
-        restored_ = size;
         window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
         if (window_ == nullptr) {
             const std::string why = last_glfw_error();
@@ -145,7 +144,11 @@ class GlfwContext final : public WindowContext {
         queue_ = nullptr;
     }
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
-    WindowSize points() const override { return restored_; }
+    WindowSize points() const override {
+        WindowSize size;
+        glfwGetWindowSize(window_, &size.width, &size.height);
+        return size;
+    }
     bool maximised() const override {
         return glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
     }
@@ -219,11 +222,6 @@ class GlfwContext final : public WindowContext {
         glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
             of(window).note(FilesDropped{{paths, paths + count}});
         });
-        glfwSetWindowSizeCallback(window_, [](GLFWwindow* window, int width, int height) {
-            const bool iconified = glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE;
-            if (width > 0 && height > 0 && !iconified && !of(window).maximised())
-                of(window).restored_ = {width, height};
-        });
         glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int width, int height) {
             of(window).note(Resized{{width, height}});
         });
@@ -244,7 +242,6 @@ class GlfwContext final : public WindowContext {
     }
 
     GLFWwindow* window_ = nullptr;
-    WindowSize restored_;  // points, while it is not maximised
     Gl gl_;
     EventQueue* queue_ = nullptr;
     Cursor cursor_ = Cursor::arrow;

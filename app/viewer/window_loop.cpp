@@ -68,14 +68,13 @@ class Keeper {
         now_.panels_shown = !state.panels_hidden;
         now_.skeleton_shown = state.skeleton_shown;
         // what the user did to it, not what the command line or a small screen did
-        if (const WindowSize size = window.points(); size != size_) {
-            size_ = size;
-            now_.window_width = std::clamp(size.width, least_window_side, largest_window_side);
-            now_.window_height = std::clamp(size.height, least_window_side, largest_window_side);
-        }
+        const WindowSize size = window.points();
+        const bool resized = size != size_;
+        resized_ = resized_ || resized;
+        size_ = size;
         if (const bool maximised = window.maximised(); maximised != maximised_)
             now_.window_maximised = maximised_ = maximised;
-        if (now_ != before) due_ = now + rest;
+        if (resized || now_ != before) due_ = now + rest;
         if (!due_) return -1;
         const double left = std::chrono::duration<double>(*due_ - now).count();
         if (left > 0) return left;
@@ -92,6 +91,11 @@ class Keeper {
 
     void write(ViewerState& state) {
         due_.reset();
+        // by now it is known whether the window is as large as it is because it was maximised
+        if (std::exchange(resized_, false) && !maximised_ && size_.width > 0 && size_.height > 0) {
+            now_.window_width = std::clamp(size_.width, least_window_side, largest_window_side);
+            now_.window_height = std::clamp(size_.height, least_window_side, largest_window_side);
+        }
         file_.keep(now_);
         say_complaint(state);
     }
@@ -106,7 +110,7 @@ class Keeper {
     SettingsFile file_;
     UserSettings now_;
     WindowSize size_;  // of the window, as last seen
-    bool maximised_ = false;
+    bool maximised_ = false, resized_ = false;
     std::optional<Clock::time_point> due_;
 };
 
