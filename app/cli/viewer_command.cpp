@@ -25,8 +25,7 @@ void run(const ViewerArguments& arguments) {
     // The loop sleeps until the window has something to say: let the signal end the process as it would.
     for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
     run_window({arguments.scene, arguments.size_given ? std::optional(size) : std::nullopt,
-                arguments.threads,
-                arguments.no_settings ? std::nullopt : settings_path()});
+                arguments.threads, arguments.no_settings ? std::nullopt : settings_path()});
 }
 
 #else

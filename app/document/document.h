@@ -56,12 +56,12 @@ class Document {
     [[nodiscard]] bool dirty() const { return dirty_; }
     // The scene has just been written there, as these bytes.
     void mark_saved(const std::filesystem::path& path, std::string_view bytes);
-    // Whether the file at `path` still is what was last opened or saved; `same` where there is no path
-    // or it stands for standard input.
+    // Whether the file at `path` still is what was last opened or saved; `same` where there is no
+    // path or it stands for standard input.
     [[nodiscard]] OnDisk on_disk() const;
-    // The scene of the file as it stands now, as an entry of the history: what was there before comes
-    // back by undo. Not dirty then. False where it is the same scene, and no entry is made. Throws
-    // Error, and nothing is changed.
+    // The scene of the file as it stands now, as an entry of the history: what was there before
+    // comes back by undo. Not dirty then. False where it is the same scene, and no entry is made.
+    // Throws Error, and nothing is changed.
     bool reload();
 
     // Kept valid through edits, undo and redo.

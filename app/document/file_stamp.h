@@ -1,4 +1,5 @@
-// What a file was when it was read or written, to tell later whether another program has changed it.
+// What a file was when it was read or written, to tell later whether another program has changed
+// it.
 #pragma once
 
 #include <sys/stat.h>
@@ -14,11 +15,12 @@ namespace ivory {
 struct FileStamp {
     dev_t device = 0;
     ino_t number = 0;
-    std::int64_t size = 0;               // bytes
-    timespec modified{}, changed{};      // its contents; its contents, name or permissions
+    std::int64_t size = 0;                // bytes
+    timespec modified{}, changed{};       // its contents; its contents, name or permissions
     std::optional<std::size_t> contents;  // a hash of its bytes, where they are known
 
-    // Of the file as it stands, links followed, `contents` not looked at; nothing where there is none.
+    // Of the file as it stands, links followed, `contents` not looked at; nothing where there is
+    // none.
     [[nodiscard]] static std::optional<FileStamp> of(const std::filesystem::path& path);
     void set_contents(std::string_view bytes);
 };

@@ -32,9 +32,9 @@ void draw_text(const ViewerState& state, const std::string& strong, const std::s
     ImGui::Dummy({0, px(state, 10)});
 }
 
-// A row of buttons; the answer that is given. Arrows and Tab go from one to the next, Enter gives the
-// one that stands out (at first `first`), Escape the last one. Keys that were pressed before the
-// question was seen are no answer to it.
+// A row of buttons; the answer that is given. Arrows and Tab go from one to the next, Enter gives
+// the one that stands out (at first `first`), Escape the last one. Keys that were pressed before
+// the question was seen are no answer to it.
 std::optional<std::size_t> draw_answers(ViewerState& state, std::span<const Answer> answers,
                                         std::size_t first) {
     const auto pressed = [](ImGuiKey key, bool repeats = false) {
@@ -96,8 +96,9 @@ void draw_replace(ViewerState& state) {
     const std::string name = printable(question.path.filename().string(), 60);
     const std::string folder = printable(question.path.parent_path().string(), 60);
     draw_text(state, "Replace " + name + "?",
-              question.again ? "Another program has just changed it. What it holds will be lost."
-                             : "There is such a file in " + folder + ". What it holds will be lost.");
+              question.again
+                  ? "Another program has just changed it. What it holds will be lost."
+                  : "There is such a file in " + folder + ". What it holds will be lost.");
     constexpr std::array answers = {Answer{"replace.replace", "Replace"},
                                     Answer{"replace.cancel", "Cancel"}};
     const std::optional<std::size_t> given = draw_answers(state, answers, 1);

@@ -175,17 +175,17 @@ void draw_contents(ViewerState& state) {
                browser.name_wanted);
     // Who went on typing saves with Enter; who clicked into a field first leaves it with Enter.
     if (ImGui::IsItemClicked()) browser.name_clicked = true;
-    // Keys that were pressed before the browser was seen, or that answer a question, are not its own.
+    // Keys that were pressed before the browser was seen, or that answer a question, are not its
+    // own.
     const bool has_keys = !browser.just_opened && !state.panels.file_question;
-    const bool enter =
-        has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+    const bool enter = has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
     done |= enter && was_typed != "browser.path" &&
             !(was_typed == "browser.name" && browser.name_clicked);
     if (enter) browser.name_clicked = false;
     const std::string name = name_now(state);
     std::error_code ignored;
-    const bool replaces = saving && !name.empty() &&
-                          !fs::is_directory(browser.folder / name, ignored) &&
+    const bool enters = !name.empty() && fs::is_directory(browser.folder / name, ignored);
+    const bool replaces = saving && !name.empty() && !enters &&
                           fs::is_regular_file(chosen_path(browser, name), ignored);
     if (!browser.fault.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).x);
@@ -198,14 +198,15 @@ void draw_contents(ViewerState& state) {
     }
 
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - spacing);
-    const bool cancel = text_button(state, "browser.cancel", "Cancel", button) ||
-                        (has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
-                         state.panels.text.id.empty());
+    const bool cancel =
+        text_button(state, "browser.cancel", "Cancel", button) ||
+        (has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
+         state.panels.text.id.empty());
     ImGui::SameLine();
     done |= text_button(state, "browser.ok",
-                        replaces ? replace_label
-                        : saving ? "Save"
-                                 : "Open",
+                        replaces            ? replace_label
+                        : saving && !enters ? "Save"
+                                            : "Open",
                         button, !name.empty(), true);
     browser.just_opened = false;
     if (cancel || (done && accept(state))) browser.mode = FileBrowser::Mode::closed;

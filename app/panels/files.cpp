@@ -137,7 +137,8 @@ bool save_as(ViewerState& state, const std::filesystem::path& path, std::optiona
 bool overwrite(ViewerState& state) {
     FileQuestion question = *std::exchange(state.panels.file_question, std::nullopt);
     const std::optional<FileStamp> now = FileStamp::of(question.path);
-    if (now && (!question.seen || compare_with_disk(question.path, *question.seen) != OnDisk::same)) {
+    if (now &&
+        (!question.seen || compare_with_disk(question.path, *question.seen) != OnDisk::same)) {
         question.seen = now;
         question.again = true;
         ask(state, std::move(question));

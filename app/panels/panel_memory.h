@@ -69,7 +69,7 @@ struct FileBrowser {
     std::string folder_text, name;
     std::string fault;  // one line; empty: none
     bool just_opened = false, name_clicked = false;
-    bool name_wanted = false;  // the name is to be typed, all of it selected
+    bool name_wanted = false;      // the name is to be typed, all of it selected
     std::optional<Pending> after;  // when it has been saved
 };
 

@@ -55,8 +55,10 @@ constexpr std::array settings = {
     Setting{"theme", Look{&UserSettings::theme}},
     Setting{"panels", Switch{&UserSettings::panels_shown}},
     Setting{"skeleton", Switch{&UserSettings::skeleton_shown}},
-    Setting{"window_width", Whole{&UserSettings::window_width, least_window_side, largest_window_side}},
-    Setting{"window_height", Whole{&UserSettings::window_height, least_window_side, largest_window_side}},
+    Setting{"window_width",
+            Whole{&UserSettings::window_width, least_window_side, largest_window_side}},
+    Setting{"window_height",
+            Whole{&UserSettings::window_height, least_window_side, largest_window_side}},
     Setting{"window_maximised", Switch{&UserSettings::window_maximised}},
 };
 
@@ -119,7 +121,8 @@ std::string text_of(const JsonValue& value) {
         std::string operator()(const JsonValue::Object& members) const {
             std::string all;
             for (const JsonMember& member : members)
-                all += (all.empty() ? "" : ", ") + quoted(member.key) + ": " + text_of(member.value);
+                all +=
+                    (all.empty() ? "" : ", ") + quoted(member.key) + ": " + text_of(member.value);
             return "{" + all + "}";
         }
     };
@@ -141,7 +144,8 @@ std::optional<std::string> bytes_of(const fs::path& file) {
 JsonValue parse_settings(const SourceText& source) {
     JsonValue root = parse_json(source);
     if (!std::holds_alternative<JsonValue::Object>(root.content))
-        throw source.fault(root.offset, "", root.description() + " stands here; it must be an object");
+        throw source.fault(root.offset, "",
+                           root.description() + " stands here; it must be an object");
     return root;
 }
 
@@ -154,8 +158,8 @@ void make_folder(const fs::path& folder) {
     static_cast<void>(::mkdir(folder.c_str(), 0700));
 }
 
-// Keeps other viewers from writing between our reading and our writing, for a while: where a lock is not
-// to be had, the file still is whole whoever writes it last.
+// Keeps other viewers from writing between our reading and our writing, for a while: where a lock
+// is not to be had, the file still is whole whoever writes it last.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& folder)

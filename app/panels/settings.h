@@ -1,8 +1,8 @@
 // What a user sets for himself, kept from one day to the next.
 //
 // A JSON object, one member a setting, in $XDG_CONFIG_HOME/ivory/settings.json or
-// ~/.config/ivory/settings.json. The list of settings stands in settings.cpp; members that are not on
-// it are kept as they are.
+// ~/.config/ivory/settings.json. The list of settings stands in settings.cpp; members that are not
+// on it are kept as they are.
 #pragma once
 
 #include <filesystem>
@@ -21,13 +21,13 @@ inline constexpr int least_window_side = 64, largest_window_side = 32768;
 struct UserSettings {
     Theme theme = Theme::dark;
     bool panels_shown = true, skeleton_shown = true;
-    int window_width = 1280, window_height = 720;  // points of the screen, where it is not maximised
+    int window_width = 1280, window_height = 720;  // points, where it is not maximised
     bool window_maximised = false;
     friend bool operator==(const UserSettings&, const UserSettings&) = default;
 };
 
-// Where the settings are kept, as the XDG base directory specification has it: relative paths in the
-// environment do not count. Nothing where the environment names no folder.
+// Where the settings are kept, as the XDG base directory specification has it: relative paths in
+// the environment do not count. Nothing where the environment names no folder.
 [[nodiscard]] std::optional<std::filesystem::path> settings_path();
 
 // The settings' file, which other viewers write too.
@@ -40,9 +40,9 @@ class SettingsFile {
     // settings.json.broken, a value that may not be is passed over; take_complaint() says so.
     UserSettings read();
 
-    // Writes the values that are not what was last read or written here, and no other one of the file.
-    // Nothing is done where there are none, nor where the file could not be read. Failures are
-    // said once.
+    // Writes the values that are not what was last read or written here, and no other one of the
+    // file. Nothing is done where there are none, nor where the file could not be read. Failures
+    // are said once.
     void keep(const UserSettings& now);
 
     // What went wrong since it was last asked for: one line. Empty: nothing.

@@ -67,8 +67,8 @@ class WindowContext : public Context {
 [[nodiscard]] std::unique_ptr<MemoryContext> open_egl_context(WindowSize size);
 // The first of the two that opens; IVORY_HEADLESS_CONTEXT=osmesa or =egl in the environment chooses.
 [[nodiscard]] std::unique_ptr<MemoryContext> open_memory_context(WindowSize size);
-// A window on the display, `size` in points of the screen, no larger than the screen has room for; without
-// a display the error says how to go on.
+// A window on the display, `size` in points of the screen, no larger than the screen has room for;
+// without a display the error says how to go on.
 [[nodiscard]] std::unique_ptr<WindowContext> open_window_context(WindowSize size, bool maximised,
                                                                  const std::string& title);
 

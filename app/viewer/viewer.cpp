@@ -143,7 +143,8 @@ struct Viewer::Parts {
 
     void ask_for_picture(const Input& input, Clock::time_point start) {
         Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
-        // An edit that no picture shows is not waited for: the session goes on with the scene that it has.
+        // An edit that no picture shows is not waited for: the session goes on with the scene that
+        // it has.
         const bool compared = wanted.scene == asked.scene || wanted.scene == same_as_asked;
         if (!compared && asked.scene && same_picture(*asked.scene, *wanted.scene))
             same_as_asked = wanted.scene;

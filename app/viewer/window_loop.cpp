@@ -60,8 +60,8 @@ class Keeper {
         say_complaint(state);
     }
 
-    // After each frame: writes what has been set when the hand rests. Seconds until then; < 0: nothing is
-    // to be written.
+    // After each frame: writes what has been set when the hand rests. Seconds until then; < 0:
+    // nothing is to be written.
     double look(ViewerState& state, const WindowContext& window, Clock::time_point now) {
         const UserSettings before = now_;
         now_.theme = state.theme;

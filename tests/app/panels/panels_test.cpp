@@ -589,8 +589,12 @@ class SaveAs : public testing::Test {
         bench().key(Key::enter);
         bench().turns(3);
     }
-    [[nodiscard]] bool asked() const { return kept->state.widgets.find("replace.replace") != nullptr; }
-    [[nodiscard]] bool other_stands() const { return read_scene(other).elements == figure().elements; }
+    [[nodiscard]] bool asked() const {
+        return kept->state.widgets.find("replace.replace") != nullptr;
+    }
+    [[nodiscard]] bool other_stands() const {
+        return read_scene(other).elements == figure().elements;
+    }
     [[nodiscard]] bool replaced() const { return read_scene(other).elements == points(2).elements; }
 };
 

@@ -126,7 +126,8 @@ TEST_F(Settings, ABrokenFileIsSetAsideAndNoneIsReplacedByIt) {
     for (const std::string broken : {"{\"theme\": ", "[]", "", "\xFF"}) {
         put(broken);
         EXPECT_EQ(file.read(), UserSettings{});
-        EXPECT_NE(file.take_complaint().find("set aside as settings.json.broken"), std::string::npos);
+        EXPECT_NE(file.take_complaint().find("set aside as settings.json.broken"),
+                  std::string::npos);
         EXPECT_FALSE(fs::exists(path));
     }
     EXPECT_EQ(read_file(path.parent_path() / "settings.json.broken"), "{\"theme\": ");
