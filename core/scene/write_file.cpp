@@ -37,6 +37,33 @@ std::optional<fs::path> behind_links(fs::path path) {
     return path;
 }
 
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+bool may(const fs::path& path, int what) {
+    return ::faccessat(AT_FDCWD, path.c_str(), what, AT_EACCESS) == 0;
+}
+
+// Whether the file may be written but not replaced: another's, in another's folder that is sticky as
+// /tmp is.
+bool belongs_to_others(const fs::path& folder, const struct stat& file) {
+    struct stat status {};
+    const uid_t user = ::geteuid();
+    return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
+           status.st_uid != user && file.st_uid != user;
+}
+
+// The way to what is open there that a link can be made from.
+std::string open_file(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
+
+// A short name of our own, since the target's may be as long as names can be.
+fs::path temporary_name(const fs::path& target) {
+    static std::atomic<unsigned> count{0};
+    return target.parent_path() / (".ivory-" + std::to_string(::getpid()) + "-" +
+                                   std::to_string(count++) + ".tmp");
+}
+
 const char* remedy_for(int error) {
     switch (error) {
         case ENOENT:
@@ -72,19 +99,13 @@ AtomicFile::AtomicFile(const fs::path& target) : label_(file_label(target)) {
         return;
     }
     // To rename over a file takes no permission to write to it; who took that away meant it.
-    if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(errno);
-
-    // A short name of our own, since the target's may be as long as names can be.
+    if (exists && !may(target, W_OK)) fail(errno);
     target_ = *resolved;
-    static std::atomic<unsigned> count{0};
-    do {
-        temporary_ = target_.parent_path() / (".ivory-" + std::to_string(::getpid()) + "-" +
-                                              std::to_string(count++) + ".tmp");
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && errno == EEXIST);
-    if (descriptor_ < 0) fail(errno);
-    // Where the system refuses (another owner's group, say) the file is no less written.
-    if (exists) static_cast<void>(::fchmod(descriptor_, status.st_mode & 07777));
+    // What the system would say when the file is put there, after all the work.
+    const fs::path folder = folder_of(target_);
+    if (!may(folder, W_OK | X_OK)) fail(errno);
+    if (exists && belongs_to_others(folder, status)) fail(EPERM);
+    if (exists) permissions_ = status.st_mode & 07777;
 }
 
 AtomicFile::~AtomicFile() {
@@ -93,7 +114,33 @@ AtomicFile::~AtomicFile() {
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
+void AtomicFile::make() {
+    if (!make_without_name()) make_with_temporary_name();
+    // Where the system refuses (another owner's group, say) the file is no less written.
+    if (permissions_) static_cast<void>(::fchmod(descriptor_, *permissions_));
+}
+
+bool AtomicFile::make_without_name() {
+#ifdef O_TMPFILE
+    descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return false;
+    // By that way it gets its name.
+    if (::access(open_file(descriptor_).c_str(), F_OK) == 0) return true;
+    ::close(std::exchange(descriptor_, -1));
+#endif
+    return false;
+}
+
+void AtomicFile::make_with_temporary_name() {
+    do {
+        temporary_ = temporary_name(target_);
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
+    if (descriptor_ < 0) fail(errno);
+}
+
 void AtomicFile::write(std::string_view bytes) {
+    if (descriptor_ < 0) make();
     while (!bytes.empty()) {
         const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
         if (written >= 0) {
@@ -115,15 +162,39 @@ void AtomicFile::give_up(int error) {
     fail(error);
 }
 
+int AtomicFile::give_name(const fs::path& name) const {
+    const std::string open = open_file(descriptor_);
+    return ::linkat(AT_FDCWD, open.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 ? 0
+                                                                                            : errno;
+}
+
 void AtomicFile::commit() {
+    if (descriptor_ < 0) make();  // an empty file is one too
+    bool stands = target_.empty();
+    if (!stands && temporary_.empty()) {
+        int error = give_name(target_);
+        stands = error == 0;
+        // A link replaces nothing, only a renamed file does.
+        while (error == EEXIST) {
+            const fs::path name = temporary_name(target_);
+            error = give_name(name);
+            if (error == 0) temporary_ = name;
+        }
+        if (error != 0) fail(error);
+    }
     close_written();
-    if (temporary_.empty()) return;
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
+    if (!stands && ::rename(temporary_.c_str(), target_.c_str()) != 0) give_up(errno);
 }
 
 bool AtomicFile::commit_new() {
+    if (descriptor_ < 0) make();
+    if (temporary_.empty()) {
+        const int error = target_.empty() ? 0 : give_name(target_);
+        if (error != 0 && error != EEXIST) fail(error);
+        close_written();
+        return error == 0;
+    }
     close_written();
-    if (temporary_.empty()) return true;
     // Unlike a rename, a second name for a file never replaces another.
     if (::link(temporary_.c_str(), target_.c_str()) == 0) {
         ::unlink(temporary_.c_str());
@@ -144,6 +215,28 @@ bool AtomicFile::commit_new() {
 void AtomicFile::fail(int error) const {
     throw Error(label_ + ": cannot be written: " + std::generic_category().message(error) + "; " +
                 remedy_for(error));
+}
+
+std::optional<FileIdentity> file_identity(const fs::path& path, FileUse use) {
+    struct stat status {};
+    const bool is_stream = path == "-";
+    const bool exists =
+        is_stream ? ::fstat(use == FileUse::input ? STDIN_FILENO : STDOUT_FILENO, &status) == 0
+                  : ::stat(path.c_str(), &status) == 0;
+    if (exists) {
+        if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) return std::nullopt;
+        return FileIdentity{status.st_dev, status.st_ino, ""};
+    }
+    if (is_stream || path.empty()) return std::nullopt;
+    const std::optional<fs::path> resolved = behind_links(path);
+    if (!resolved || ::stat(folder_of(*resolved).c_str(), &status) != 0) return std::nullopt;
+    return FileIdentity{status.st_dev, status.st_ino, resolved->filename().string()};
+}
+
+bool is_written_straight(const fs::path& path) {
+    std::error_code ignored;
+    return !behind_links(path) ||
+           (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored));
 }
 
 void write_file(const fs::path& target, std::string_view bytes) {
