@@ -105,7 +105,11 @@ class Tracer {
             const std::size_t threads =
                 std::min(static_cast<std::size_t>(work_.threads), chunks.size());
             std::vector<std::jthread> helpers;
-            for (std::size_t t = 1; t < threads; ++t) helpers.emplace_back(worker);
+            try {
+                while (helpers.size() + 1 < threads) helpers.emplace_back(worker);
+            } catch (const std::system_error&) {
+                // Fewer threads do the same work.
+            }
             worker();
         }
         if (failure) std::rethrow_exception(failure);

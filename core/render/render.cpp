@@ -125,11 +125,17 @@ class FrameJob::Work {
         running_ = threads;
         for (Tally& tally : tallies_) {
             try {
-                workers_.emplace_back([this, &tally] { work(tally); });
+                if (threads > 1) {
+                    workers_.emplace_back([this, &tally] { work(tally, std::nullopt); });
+                    continue;
+                }
             } catch (const std::system_error&) {
-                // Fewer workers do the same work; none at all cannot.
+                // Fewer workers do the same work.
+            }
+            if (workers_.empty() && &tally == &tallies_.back()) {
+                own_ = &tally;
+            } else {
                 leave();
-                if (workers_.empty() && &tally == &tallies_.back()) throw;
             }
         }
     }
@@ -141,12 +147,15 @@ class FrameJob::Work {
         return running_ == 0;
     }
 
-    bool wait_for(std::chrono::milliseconds time) const {
+    bool wait_for(std::chrono::milliseconds time) {
+        if (own_ != nullptr) do_own_work(Clock::now() + time);
+        if (own_ != nullptr) return false;
         std::unique_lock lock(mutex_);
         return ended_.wait_for(lock, time, [this] { return running_ == 0; });
     }
 
     JobReport finish() {
+        if (own_ != nullptr) do_own_work(std::nullopt);
         workers_.clear();  // joins
         if (failure_) std::rethrow_exception(failure_);
         JobReport report;
@@ -233,25 +242,40 @@ class FrameJob::Work {
 
     bool stopped() const { return stop_.stop_requested(); }
 
-    void work(Tally& tally) {
+    // Until there is nothing left to do, or for at least one step that time has come. Whether this
+    // worker has left.
+    bool work(Tally& tally, std::optional<Clock::time_point> until) {
         try {
             const Clock::time_point start = Clock::now();
-            if (settings_.task != Task::shade) tally.reached.resize(picture_.field->size());
-            tally.traced = std::make_unique<TracedTile>();
-            tally.traced->surfaces.wants_elements = !canvas_.looks.empty();
-            while (!stopped()) {
+            const Clock::duration shading_before = tally.shading;
+            if (tally.traced == nullptr) prepare(tally);
+            bool in_time = true;
+            while (in_time && !stopped()) {
                 const std::size_t step = next_.fetch_add(1, std::memory_order_relaxed);
                 if (step >= steps_) break;
                 if (!take(step, tally)) cut_short_ = true;
+                in_time = !until || Clock::now() < *until;
             }
+            tally.tracing += Clock::now() - start - (tally.shading - shading_before);
+            if (!in_time) return false;
             if (next_.load(std::memory_order_relaxed) < steps_) cut_short_ = true;
-            tally.tracing = Clock::now() - start - tally.shading;
         } catch (...) {
             const std::lock_guard lock(mutex_);
             if (!failure_) failure_ = std::current_exception();
             stop_.request_stop();
         }
         leave();
+        return true;
+    }
+
+    void prepare(Tally& tally) const {
+        if (settings_.task != Task::shade) tally.reached.resize(picture_.field->size());
+        tally.traced = std::make_unique<TracedTile>();
+        tally.traced->surfaces.wants_elements = !canvas_.looks.empty();
+    }
+
+    void do_own_work(std::optional<Clock::time_point> until) {
+        if (work(*own_, until)) own_ = nullptr;
     }
 
     void leave() {
@@ -779,6 +803,7 @@ class FrameJob::Work {
     int running_ = 0;
     std::exception_ptr failure_;
     std::vector<Tally> tallies_;
+    Tally* own_ = nullptr;  // of the caller, who works where there are no workers; null: none, or done
     std::vector<std::jthread> workers_;  // last: joined before anything that they use is gone
 };
 
@@ -793,7 +818,7 @@ void FrameJob::cancel() noexcept { work_->cancel(); }
 
 bool FrameJob::finished() const { return work_->finished(); }
 
-bool FrameJob::wait_for(std::chrono::milliseconds time) const { return work_->wait_for(time); }
+bool FrameJob::wait_for(std::chrono::milliseconds time) { return work_->wait_for(time); }
 
 JobReport FrameJob::finish() { return work_->finish(); }
 

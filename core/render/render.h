@@ -68,24 +68,25 @@ struct JobReport {
     std::size_t elements_reached = 0;
 };
 
-// Starts at once. The canvas must outlive it and belongs to it until `finish` or the destructor has
+// Starts at once, but for one thread, or where the system gives none: then the caller does the work
+// in `wait_for` and `finish`. The canvas must outlive it and belongs to it until `finish` or the destructor has
 // returned; then every tile is what its TileState says, cancelled or not.
 class FrameJob {
   public:
-    // Throws std::bad_alloc, or std::system_error where no thread can be started.
+    // Throws std::bad_alloc.
     FrameJob(Picture picture, Canvas& canvas, JobSettings settings);
     ~FrameJob();  // cancels and waits
     FrameJob(const FrameJob&) = delete;
     FrameJob& operator=(const FrameJob&) = delete;
 
-    // Returns at once; the workers end after at most one tile more each.
+    // Returns at once, from any thread; the workers end after at most one tile more each.
     void cancel() noexcept;
 
     // Whether all workers have ended. Never waits.
     [[nodiscard]] bool finished() const;
 
-    // Waits that long at most; whether all workers have ended.
-    [[nodiscard]] bool wait_for(std::chrono::milliseconds time) const;
+    // Waits, or works, that long and no step of the work longer; whether all of it is done.
+    [[nodiscard]] bool wait_for(std::chrono::milliseconds time);
 
     // Waits for the end. Throws what a worker threw (std::bad_alloc).
     JobReport finish();

@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/document/orbit.h"
@@ -171,8 +170,9 @@ class Bench {
             job_settings.threads = options_.threads;
             job_settings.order = Order::coarse_to_fine;
             FrameJob job(picture, canvas, job_settings);
-            std::this_thread::sleep_for(Milliseconds(random_.uniform(0, 80)));
-            if (job.finished()) continue;
+            const auto before = std::chrono::duration_cast<std::chrono::milliseconds>(
+                Milliseconds(random_.uniform(0, 80)));
+            if (job.wait_for(before)) continue;
             const Clock::time_point start = Clock::now();
             job.cancel();
             job.finish();
