@@ -1,6 +1,5 @@
 // Command line or viewer, and the one place that catches.
 #include <fcntl.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -14,7 +13,7 @@
 
 namespace {
 
-enum ExitStatus { done = 0, failed = 1, wrong_usage = 2, was_interrupted = 130 };
+enum ExitStatus { done = 0, failed = 1, wrong_usage = 2 };
 
 int complain(const char* line, ExitStatus status) {
     std::fprintf(stderr, "ivory: %s\n", line);
@@ -35,20 +34,19 @@ void occupy_standard_descriptors() {
 
 int main(int count, char** words) {
     occupy_standard_descriptors();
-    ::signal(SIGPIPE, SIG_IGN);  // a reader that has gone is an error of the write
     ivory::watch_interrupts();
     try {
         std::visit([](const auto& arguments) { ivory::run(arguments); },
                    ivory::parse_arguments(count, words));
         return done;
     } catch (const ivory::Interrupted&) {
-        return was_interrupted;
+        return ivory::interrupted_status();
     } catch (const ivory::UsageError& error) {
         return complain(error.what(), wrong_usage);
     } catch (const std::bad_alloc&) {
         return complain("out of memory; take a smaller picture or scene", failed);
     } catch (const std::exception& error) {
         // A system call that the interrupt woke may have been taken for a failure.
-        return ivory::interrupted() ? was_interrupted : complain(error.what(), failed);
+        return ivory::interrupted() ? ivory::interrupted_status() : complain(error.what(), failed);
     }
 }

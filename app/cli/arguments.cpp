@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/cli/output_names.h"
 #include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
 #include "core/scene/text.h"
@@ -111,6 +112,11 @@ void add_work_options(CLI::App& call, WorkArguments& work, const std::string& to
     call.add_flag("--quiet", work.quiet, "no progress on standard error");
 }
 
+constexpr std::array<std::string_view, 1> picture_suffixes{".png"};
+constexpr std::array<std::string_view, 1> depth_suffixes{".pfm"};
+constexpr std::array<std::string_view, 2> answers_suffixes{".csv", ".txt"};
+constexpr std::array<std::string_view, 2> statistics_suffixes{".json", ".txt"};
+
 bool Skipping::*read_skipping(std::string_view text) {
     std::vector<std::string_view> names;
     for (const SkippingName& kind : skipping_names) {
@@ -205,7 +211,13 @@ void add_viewer_options(CLI::App& app, ViewerArguments& viewer) {
 }
 
 void check(const ViewerArguments& viewer) {
-    if (viewer.headless) return;
+    if (viewer.headless) {
+        check_files(
+            std::array{NamedFile{"the scene", viewer.scene.value_or(""), {}},
+                       NamedFile{"the script", viewer.script.value_or(""), {}}},
+            std::array{NamedFile{"--screenshot", viewer.screenshot.value_or(""), picture_suffixes}});
+        return;
+    }
     if (viewer.script) throw UsageError("--script needs --headless");
     if (viewer.screenshot) {
         throw UsageError("--screenshot needs --headless; in the window F12 takes one");
@@ -213,30 +225,22 @@ void check(const ViewerArguments& viewer) {
 }
 
 void check(const RenderArguments& render) {
-    const std::array outputs{render.picture, render.depth, render.answers, render.statistics};
-    bool any = false;
-    for (std::size_t a = 0; a < outputs.size(); ++a) {
-        if (outputs[a].empty()) continue;
-        any = true;
-        for (std::size_t b = 0; b < a; ++b) {
-            if (outputs[a] != outputs[b] || outputs[a] == "/dev/null") continue;
-            throw UsageError((outputs[a] == "-" ? "standard output" : printable(outputs[a])) +
-                             " is named for two outputs; name another for one of them");
-        }
-    }
-    if (!any) {
+    if ((render.picture + render.depth + render.answers + render.statistics).empty()) {
         throw UsageError(
             "nowhere to write to; name the picture with -o OUT.png, or --depth, "
             "--answers or --stats");
     }
+    check_files(std::array{NamedFile{"the scene", render.scene, {}}},
+                std::array{NamedFile{"-o", render.picture, picture_suffixes},
+                           NamedFile{"--depth", render.depth, depth_suffixes},
+                           NamedFile{"--answers", render.answers, answers_suffixes},
+                           NamedFile{"--stats", render.statistics, statistics_suffixes}});
 }
 
 void check(const TraceArguments& trace) {
-    if (trace.scene == "-" && trace.rays == "-") {
-        throw UsageError(
-            "standard input cannot be scene and rays at once; name a file with --rays "
-            "or for the scene");
-    }
+    check_files(std::array{NamedFile{"the scene", trace.scene, {}},
+                           NamedFile{"the rays", trace.rays, {}}},
+                std::array{NamedFile{"standard output", "-", {}}});
 }
 
 void check(const InfoArguments& info) {

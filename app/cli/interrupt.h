@@ -1,18 +1,40 @@
-// Ctrl+C: a flag that long work looks at.
+// Ctrl+C, a closed terminal and the like: a flag that long work looks at.
 #pragma once
+
+#include <functional>
+#include <thread>
 
 namespace ivory {
 
-// Thrown where the user's wish to stop is seen. Exit status 130.
+// Thrown where the wish to stop is seen. Exit status: interrupted_status().
 struct Interrupted {};
 
-// From now on SIGINT and SIGTERM raise the flag instead of ending the process; a second one ends it
-// at once. System calls that wait are woken (EINTR).
+// From now on the signals that ask a program to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU,
+// SIGUSR1, SIGUSR2) raise the flag instead of ending the process; a second of a kind ends it at
+// once. System calls that wait are woken (EINTR). A SIGHUP that is ignored (nohup) stays so. What a
+// write could raise (SIGPIPE, SIGXFSZ) is ignored: the write says what is wrong.
 void watch_interrupts();
 
 [[nodiscard]] bool interrupted() noexcept;
 
 // Throws Interrupted where the flag is up.
 void stop_if_interrupted();
+
+// 128 and the number of the signal that has raised the flag: 130 for Ctrl+C.
+[[nodiscard]] int interrupted_status() noexcept;
+
+// For a loop that sleeps where no signal wakes it. One at a time.
+class InterruptBell {
+  public:
+    // `ring` is called once, on another thread, when the flag goes up or is up already.
+    explicit InterruptBell(std::function<void()> ring);
+    ~InterruptBell();
+    InterruptBell(const InterruptBell&) = delete;
+    InterruptBell& operator=(const InterruptBell&) = delete;
+
+  private:
+    int read_end_ = -1, write_end_ = -1;
+    std::jthread listener_;
+};
 
 }  // namespace ivory

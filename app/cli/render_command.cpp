@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "app/cli/commands.h"
@@ -35,15 +33,15 @@ double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Opened before the work begins: what cannot be written is said at once.
+// Looked at before the work begins: what cannot be written is said at once.
 struct Outputs {
     std::optional<Output> picture, depth, answers, statistics;
 
     explicit Outputs(const RenderArguments& arguments) {
-        open(picture, arguments.picture, arguments.scene);
-        open(depth, arguments.depth, arguments.scene);
-        open(answers, arguments.answers, arguments.scene);
-        open(statistics, arguments.statistics, arguments.scene);
+        open(picture, arguments.picture);
+        open(depth, arguments.depth);
+        open(answers, arguments.answers);
+        open(statistics, arguments.statistics);
     }
 
     void commit() {
@@ -53,15 +51,8 @@ struct Outputs {
     }
 
   private:
-    static void open(std::optional<Output>& output, const std::string& target,
-                     const std::string& scene) {
-        if (target.empty()) return;
-        std::error_code ignored;
-        if (target != "-" && std::filesystem::is_regular_file(target, ignored) &&
-            std::filesystem::equivalent(target, scene, ignored)) {
-            throw Error(printable(target) + ": is the scene itself; name another file to write to");
-        }
-        output.emplace(target);
+    static void open(std::optional<Output>& output, const std::string& target) {
+        if (!target.empty()) output.emplace(target);
     }
 };
 

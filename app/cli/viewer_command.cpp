@@ -1,7 +1,9 @@
 #include "app/cli/commands.h"
 
 #ifdef IVORY_VIEWER
-#include <signal.h>
+#include <functional>
+#include <memory>
+#include <utility>
 
 #include "app/cli/interrupt.h"
 #include "app/panels/settings.h"
@@ -22,10 +24,16 @@ void run(const ViewerArguments& arguments) {
                       arguments.threads, stop_if_interrupted});
         return;
     }
-    // The loop sleeps until the window has something to say: let the signal end the process as it would.
-    for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
-    run_window({arguments.scene, arguments.size_given ? std::optional(size) : std::nullopt,
-                arguments.threads, arguments.no_settings ? std::nullopt : settings_path()});
+    WindowSettings settings;
+    settings.scene = arguments.scene;
+    if (arguments.size_given) settings.size = size;
+    settings.threads = arguments.threads;
+    if (!arguments.no_settings) settings.user_settings = settings_path();
+    settings.stop = stop_if_interrupted;
+    settings.listen = [](std::function<void()> wake) {
+        return std::make_shared<InterruptBell>(std::move(wake));
+    };
+    run_window(settings);
 }
 
 #else

@@ -29,6 +29,7 @@ constexpr double frame_seconds = 1.0 / 60;  // of the script's own time, whateve
 constexpr int longest_wait = 60 * IVORY_PATIENCE;  // seconds for a final picture
 // A person waits for the surface to follow before moving on; no longer than that for a heavy scene.
 constexpr double patience = 2;  // seconds
+constexpr double between_looks = 0.05;  // seconds: whether somebody wants to stop
 constexpr int frames_to_settle = 3;
 constexpr int most_wheel_steps = 2000;
 
@@ -152,7 +153,7 @@ void ScriptPlayer::pause_for_picture() {
     const Clock::time_point start = Clock::now();
     while (viewer_.awaits_first_picture() && seconds_since(start) < patience) {
         stop_();
-        wake_up_.wait(patience - seconds_since(start));
+        wake_up_.wait(std::min(patience - seconds_since(start), between_looks));
     }
 }
 
@@ -165,7 +166,7 @@ void ScriptPlayer::wait_final() {
             throw Error("the picture is not final after " + std::to_string(longest_wait) +
                         " seconds: " + std::to_string(static_cast<int>(100 * picture.progress)) +
                         " % of it is traced");
-        if (!viewer_.final()) wake_up_.wait(0.05);
+        if (!viewer_.final()) wake_up_.wait(between_looks);
     }
 }
 

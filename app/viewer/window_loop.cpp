@@ -129,13 +129,21 @@ void run_window(const WindowSettings& settings) {
     connect_clipboard(*window);
     viewer.state().widgets.whole_lists = false;
     keeper.begin(viewer.state(), *window);
-    if (settings.scene) request_open(viewer.state(), *settings.scene);
+    if (settings.scene) {
+        const std::string before = viewer.state().message.text;
+        request_open(viewer.state(), *settings.scene);
+        const Message& message = viewer.state().message;
+        if (message.error && message.text != before)
+            std::fprintf(stderr, "ivory: %s\n", message.text.c_str());
+    }
+    const std::shared_ptr<void> listener = settings.listen([&] { window->wake(); });
 
     std::string title;
     Clock::time_point last = Clock::now();
     double wait = 0;  // seconds until a frame is wanted though nothing happens; < 0: for ever
     while (!viewer.state().quit) {
         if (events.empty()) window->wait_events(events, wait);
+        settings.stop();
         const std::chrono::duration<double> too_soon = least_frame - (Clock::now() - last);
         if (too_soon.count() > 0) {
             std::this_thread::sleep_for(too_soon);

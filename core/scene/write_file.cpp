@@ -224,7 +224,7 @@ std::optional<FileIdentity> file_identity(const fs::path& path, FileUse use) {
         is_stream ? ::fstat(use == FileUse::input ? STDIN_FILENO : STDOUT_FILENO, &status) == 0
                   : ::stat(path.c_str(), &status) == 0;
     if (exists) {
-        if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) return std::nullopt;
+        if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) return std::nullopt;
         return FileIdentity{status.st_dev, status.st_ino, ""};
     }
     if (is_stream || path.empty()) return std::nullopt;

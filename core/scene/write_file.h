@@ -66,7 +66,7 @@ struct FileIdentity {
 enum class FileUse { input, output };
 
 // "-" is standard input or output. Nothing for what may be named as often as one likes: devices as
-// /dev/null or a terminal, and what is in no folder that could be looked into.
+// /dev/null or a terminal, sockets, and what is in no folder that could be looked into.
 [[nodiscard]] std::optional<FileIdentity> file_identity(const std::filesystem::path& path,
                                                         FileUse use);
 

@@ -55,8 +55,19 @@ TEST(Arguments, TheEndsOfTheRangesAreInside) {
         EXPECT_NO_THROW(parse({"trace", "a", "--tolerance", tolerance})) << tolerance;
     }
     for (const char* size : {"1x1", "32768x1", "8192x32768"}) {
-        EXPECT_NO_THROW(parse({"render", "a", "-o", "b", "--size", size})) << size;
+        EXPECT_NO_THROW(parse({"render", "a", "-o", "b.png", "--size", size})) << size;
     }
+}
+
+// Case does not matter, and what is not a file of its own needs no suffix.
+TEST(Arguments, SuffixesThatSayWhatIsWrittenAreTaken) {
+    for (const char* name : {"a.png", "a.b.PNG", "-", "/dev/null", "/dev/stdout"}) {
+        EXPECT_NO_THROW(parse({"render", "a", "-o", name})) << name;
+    }
+    for (const char* name : {"a.csv", "a.txt", "/dev/null"}) {
+        EXPECT_NO_THROW(parse({"render", "a", "--answers", name})) << name;
+    }
+    EXPECT_NO_THROW(parse({"render", "a", "--depth", "/dev/null", "--answers", "/dev/null"}));
 }
 
 TEST(Arguments, TraceReadsStandardInputByDefault) {
@@ -112,37 +123,48 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{{"render"}, "SCENE is required"}, Wrong{{"trace"}, "SCENE is required"},
         Wrong{{"info"}, "SCENE is missing"}, Wrong{{"render", "a"}, "nowhere to write to"},
-        Wrong{{"render", "a", "-o"}, "-o"}, Wrong{{"render", "a", "b", "-o", "c"}, "b"},
-        Wrong{{"render", "a", "-o", "b", "--sise", "1x1"}, "--sise"},
-        Wrong{{"render", "a", "-o", "b", "--size", "10"}, "\"10\" is not WIDTHxHEIGHT"},
-        Wrong{{"render", "a", "-o", "b", "--size", "10x"}, "WIDTHxHEIGHT"},
-        Wrong{{"render", "a", "-o", "b", "--size", "x10"}, "WIDTHxHEIGHT"},
-        Wrong{{"render", "a", "-o", "b", "--size", "0x10"}, "from 1 to 32768"},
-        Wrong{{"render", "a", "-o", "b", "--size", "-1x10"}, "from 1 to 32768"},
-        Wrong{{"render", "a", "-o", "b", "--size", "10x10x10"}, "WIDTHxHEIGHT"},
-        Wrong{{"render", "a", "-o", "b", "--size", "32769x1"}, "from 1 to 32768"},
-        Wrong{{"render", "a", "-o", "b", "--size", "99999999999x1"}, "WIDTHxHEIGHT"},
-        Wrong{{"render", "a", "-o", "b", "--size", "32768x32768"}, "at most 268435456 pixels"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", "0"}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", "0.11"}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", "9e-16"}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", "nan"}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", "1e-6m"}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--tolerance", ""}, "from 1e-15 to 0.1"},
-        Wrong{{"render", "a", "-o", "b", "--threads", "0"}, "from 1 to"},
-        Wrong{{"render", "a", "-o", "b", "--threads", "-2"}, "from 1 to"},
-        Wrong{{"render", "a", "-o", "b", "--threads", "2.5"}, "whole number"},
-        Wrong{{"render", "a", "-o", "b", "--repeat", "0"}, "from 1 to"},
-        Wrong{{"render", "a", "-o", "b", "--delta", "0"}, "greater than 0"},
-        Wrong{{"render", "a", "-o", "b", "--delta", "inf"}, "greater than 0"},
-        Wrong{{"render", "a", "-o", "b", "--method", "magic"}, "take proved"},
+        Wrong{{"render", "a", "-o"}, "-o"}, Wrong{{"render", "a", "b", "-o", "c.png"}, "b"},
+        Wrong{{"render", "a", "-o", "b.png", "--sise", "1x1"}, "--sise"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "10"}, "\"10\" is not WIDTHxHEIGHT"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "10x"}, "WIDTHxHEIGHT"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "x10"}, "WIDTHxHEIGHT"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "0x10"}, "from 1 to 32768"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "-1x10"}, "from 1 to 32768"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "10x10x10"}, "WIDTHxHEIGHT"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "32769x1"}, "from 1 to 32768"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "99999999999x1"}, "WIDTHxHEIGHT"},
+        Wrong{{"render", "a", "-o", "b.png", "--size", "32768x32768"}, "at most 268435456 pixels"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", "0"}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", "0.11"}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", "9e-16"}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", "nan"}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", "1e-6m"}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--tolerance", ""}, "from 1e-15 to 0.1"},
+        Wrong{{"render", "a", "-o", "b.png", "--threads", "0"}, "from 1 to"},
+        Wrong{{"render", "a", "-o", "b.png", "--threads", "-2"}, "from 1 to"},
+        Wrong{{"render", "a", "-o", "b.png", "--threads", "2.5"}, "whole number"},
+        Wrong{{"render", "a", "-o", "b.png", "--repeat", "0"}, "from 1 to"},
+        Wrong{{"render", "a", "-o", "b.png", "--delta", "0"}, "greater than 0"},
+        Wrong{{"render", "a", "-o", "b.png", "--delta", "inf"}, "greater than 0"},
+        Wrong{{"render", "a", "-o", "b.png", "--method", "magic"}, "take proved"},
         Wrong{{"trace", "a", "--method", "magic"}, "bisection"},
         Wrong{{"render", "a", "-o", "-", "--answers", "-"}, "standard output is named for two"},
-        Wrong{{"render", "a", "-o", "b", "--stats", "b"}, "b is named for two"},
-        Wrong{{"trace", "-"}, "standard input cannot be scene and rays"},
-        Wrong{{"trace", "a", "-o", "b"}, "-o"}, Wrong{{"info", "a", "--methods"}, "takes no scene"},
+        Wrong{{"trace", "-"}, "standard input cannot be the scene and the rays"},
+        Wrong{{"trace", "a", "-o", "b.png"}, "-o"}, Wrong{{"info", "a", "--methods"}, "takes no scene"},
+        Wrong{{"render", "a", "-o", "b.jpg"},
+              "-o: \"b.jpg\" has the suffix \".jpg\", which is not written; name a file that ends in "
+              ".png"},
+        Wrong{{"render", "a", "-o", "b"}, "has no suffix; name a file that ends in .png"},
+        Wrong{{"render", "a", "-o", "b.png.bak"}, "ends in .png"},
+        Wrong{{"render", "a", "--depth", "b.exr"}, "ends in .pfm"},
+        Wrong{{"render", "a", "--answers", "b.json"}, "ends in .csv or .txt"},
+        Wrong{{"render", "a", "--stats", "b.csv"}, "ends in .json or .txt"},
+        Wrong{{"a", "--headless", "--screenshot", "b.jpg"}, "--screenshot: \"b.jpg\" has the suffix"},
+        Wrong{{"render", "a", "--answers", "b.txt", "--stats", "./b.txt"},
+              "b.txt is named for two outputs, --answers and --stats"},
+        Wrong{{"-", "--headless", "--script", "-"}, "standard input cannot be the scene and the script"},
         Wrong{{"a", "b"}, "b"}, Wrong{{"--bogus"}, "--bogus"},
-        Wrong{{"render", "a", "-o", "b\n", "-o", "c"}, "--output"}));
+        Wrong{{"render", "a", "-o", "b\n", "-o", "c.png"}, "--output"}));
 
 }  // namespace
 }  // namespace ivory

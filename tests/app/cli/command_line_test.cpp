@@ -252,7 +252,7 @@ TEST(CommandLine, WhatCannotBeWrittenLeavesNothing) {
     expect_failure(run_ivory({"render", figure_1, "-o", out, "--size", "8x8"}), 1,
                    "cannot be written");
     // The second of two outputs fails: the first is not there either.
-    expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats", out + "none/s",
+    expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats", out + "none/s.json",
                               "--size", "8x8"}),
                    1, "none/s");
     EXPECT_EQ(files_in(folder.path()), 0u);
@@ -271,7 +271,7 @@ TEST(CommandLine, WhatStoodThereStaysUntilTheNewFileIsWhole) {
     const std::string picture = (folder / "a.png").string();
     put_bytes(picture, "old");
     expect_failure(run_ivory({"render", figure_1, "-o", picture, "--stats",
-                              folder.path().string() + "/none/s", "--size", "8x8"}),
+                              folder.path().string() + "/none/s.json", "--size", "8x8"}),
                    1, "none/s");
     EXPECT_EQ(bytes_of(picture), "old");
     EXPECT_EQ(run_ivory({"render", figure_1, "-o", picture, "--size", "8x8"}).status, 0);
@@ -312,17 +312,113 @@ TEST(CommandLine, AReaderThatLeavesIsNoCrash) {
     EXPECT_EQ(lines_of(bytes_of(folder / "err")).size(), 1u);
 }
 
-TEST(CommandLine, AnInterruptedRenderIs130AndLeavesNothing) {
-    for (const int signal : {SIGINT, SIGTERM}) {
+// A terminal that is closed, a quit key, a shutdown, a time limit: 128 and the signal's number, which
+// for Ctrl+C is the 130 of the contract.
+TEST(CommandLine, ASignalEndsARenderInOrderAndLeavesNothing) {
+    for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGUSR1, SIGUSR2}) {
         const TemporaryFolder folder;
         const Ivory ivory({"render", figure_1, "-o", (folder / "a.png").string(), "--size",
-                           "400x300", "--repeat", "1000000"});
-        wait_until([&] { return files_in(folder.path()) == 1; });  // the temporary one
+                           "400x300", "--repeat", "1000000", "--threads", "1"});
+        wait_until([&] { return ivory.catches(signal); });
         ivory.send(signal);
         const Finished run = ivory.wait();
-        EXPECT_EQ(run.status, 130) << run.err;
+        EXPECT_EQ(run.status, 128 + signal) << run.err;
+        EXPECT_FALSE(run.was_killed) << signal;
         EXPECT_EQ(run.err, "");
         EXPECT_EQ(files_in(folder.path()), 0u);
+    }
+}
+
+TEST(CommandLine, AKilledRenderLeavesNothing) {
+    const TemporaryFolder folder;
+    const Ivory ivory({"render", figure_1, "-o", (folder / "a.png").string(), "--answers",
+                       (folder / "a.csv").string(), "--size", "400x300", "--repeat", "1000000"});
+    wait_until([&] { return ivory.catches(SIGINT); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ivory.send(SIGKILL);
+    EXPECT_TRUE(ivory.wait().was_killed);
+    EXPECT_EQ(files_in(folder.path()), 0u);
+}
+
+// nohup
+TEST(CommandLine, AHangupThatIsIgnoredStaysSo) {
+    const auto before = ::signal(SIGHUP, SIG_IGN);
+    const Ivory ivory({"render", figure_1, "--stats", "-", "--size", "64x64", "--repeat", "200"});
+    ::signal(SIGHUP, before);
+    wait_until([&] { return ivory.catches(SIGINT); });
+    ivory.send(SIGHUP);
+    EXPECT_EQ(ivory.wait().status, 0);
+}
+
+// Files are compared, not the names that they go by.
+TEST(CommandLine, NoTwoOutputsAreTheSameFile) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    const auto refused = [&](const std::string& picture, const std::string& depth) {
+        const std::size_t before = files_in(folder.path());
+        expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "-o", picture, "--depth",
+                                  depth}),
+                       2, "is named for two outputs, -o and --depth");
+        EXPECT_EQ(files_in(folder.path()), before);
+    };
+    fs::create_symlink("a.png", folder / "there later.pfm");
+    refused(out + "a.png", out + "there later.pfm");
+    put_bytes(folder / "a.png", "old");
+    refused(out + "a.png", out + "there later.pfm");
+    fs::create_hard_link(folder / "a.png", folder / "hard.pfm");
+    refused(out + "a.png", out + "hard.pfm");
+    EXPECT_EQ(bytes_of(out + "a.png"), "old");
+    fs::create_directory_symlink(".", folder / "here");
+    expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "--answers", out + "a.txt",
+                              "--stats", out + "here/./a.txt"}),
+                   2, "is named for two outputs, --answers and --stats");
+    expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "-o", "-", "--depth",
+                              "/dev/stdout"}),
+                   2, "is named for two outputs");
+}
+
+TEST(CommandLine, NoOutputIsAnInput) {
+    const TemporaryFolder folder;
+    const std::string scene = (folder / "s.ivory.json").string();
+    fs::copy_file(figure_1, scene);
+    fs::create_symlink("s.ivory.json", folder / "soft.png");
+    fs::create_hard_link(scene, folder / "hard.png");
+    for (const char* name : {"soft.png", "hard.png"}) {
+        expect_failure(run_ivory({"render", scene, "-o", (folder / name).string()}), 1,
+                       std::string(name) + ": is the scene itself; name another file");
+        expect_failure(run_ivory({"render", "-", "-o", (folder / name).string()}, {scene, ""}), 1,
+                       "is the scene itself");
+    }
+    EXPECT_EQ(bytes_of(scene), bytes_of(figure_1));
+    put_bytes(folder / "rays", "0 0 8 0 0 -1\n");
+    const std::string rays = (folder / "rays").string();
+    const Finished run = run_ivory({"trace", scene, "--rays", rays}, {"/dev/null", rays});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("standard output: is the rays itself"), std::string::npos) << run.err;
+    EXPECT_EQ(bytes_of(rays), "0 0 8 0 0 -1\n");
+}
+
+// The way to be without threads that every system knows: no memory for their stacks.
+TEST(CommandLine, WithoutThreadsTheWorkIsDoneAllTheSame) {
+    const TemporaryFolder folder;
+    put_bytes(folder / "rays", [] {
+        std::string rays;
+        for (int n = 0; n < 1000; ++n) rays += "0 0 8 0 0 -1\n";
+        return rays;
+    }());
+    const std::string ivory = "'" IVORY_EXECUTABLE "' ", scene = "'" + figure_1 + "' ";
+    for (const char* threads : {"1", "4"}) {
+        const std::string call =
+            "cd '" + folder.path().string() + "' && { " + ivory + "render " + scene +
+            "-o a.png --answers a.csv --size 200x150 --threads 2 && ulimit -s 4000000 && " + ivory +
+            "trace " + scene + "--rays rays --threads 2 >free && ulimit -v 400000 && " + ivory +
+            "render " + scene + "-o b.png --answers b.csv --size 200x150 --threads " + threads +
+            " && " + ivory + "trace " + scene + "--rays rays --threads " + threads +
+            " >bound; } 2>err";
+        EXPECT_EQ(std::system(call.c_str()), 0) << bytes_of(folder / "err");
+        EXPECT_EQ(bytes_of(folder / "a.png"), bytes_of(folder / "b.png"));
+        EXPECT_EQ(bytes_of(folder / "a.csv"), bytes_of(folder / "b.csv"));
+        EXPECT_EQ(bytes_of(folder / "free"), bytes_of(folder / "bound"));
     }
 }
 

@@ -36,6 +36,7 @@ inline void put_bytes(const std::filesystem::path& path, const std::string& byte
 struct Finished {
     int status = -1;
     std::string out, err;
+    bool was_killed = false;  // by a signal
 };
 
 struct Streams {
@@ -72,6 +73,16 @@ class Ivory {
 
     void send(int signal) const { ::kill(process_, signal); }
 
+    // Whether it has begun to look out for that signal, as /proc says.
+    [[nodiscard]] bool catches(int signal) const {
+        std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+        for (std::string line; std::getline(status, line);) {
+            if (!line.starts_with("SigCgt:")) continue;
+            return (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
+        }
+        return false;
+    }
+
     [[nodiscard]] std::string out_so_far() const { return bytes_of(out_); }
 
     Finished wait() const {
@@ -79,7 +90,7 @@ class Ivory {
         while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
         }
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out_),
-                bytes_of(err_)};
+                bytes_of(err_), WIFSIGNALED(status)};
     }
 
   private:
