@@ -12,6 +12,8 @@
 #include "app/cli/output.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
+#include "core/render/canvas.h"
+#include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"
 
@@ -156,7 +158,7 @@ std::string json_of(const std::string& file, const Scene& scene, const Field& fi
                     const Camera& camera) {
     const Census census = census_of(scene);
     Json json;
-    json["scene"] = printable(file);
+    json["scene"] = file;
     json["threshold"] = scene.threshold;
     json["elements"] = {{"total", scene.elements.size()},
                         {"visible", census.visible},
@@ -171,7 +173,8 @@ std::string json_of(const std::string& file, const Scene& scene, const Field& fi
                       {"framed", !scene.camera}};
     json["lights"] = scene.lights ? scene.lights->size() : default_lights().size();
     json["skipped"] = json_of_skips(scene);
-    return json.dump(2) + "\n";
+    // The bytes of a path need not be UTF-8, which JSON is.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 // `proved: what it proves`, aligned.
@@ -205,7 +208,13 @@ void run(const InfoArguments& arguments) {
     }
     const Scene scene = read_scene(arguments.scene, stop_if_interrupted);
     const Field field = compile(scene);
-    const Camera camera = camera_of(scene, field, default_width, default_height);
+    const Camera camera = [&] {
+        try {
+            return camera_of(scene, field, default_width, default_height);
+        } catch (const Error& fault) {
+            throw camera_fault(scene, arguments.scene, fault);
+        }
+    }();
     output.write(arguments.json ? json_of(arguments.scene, scene, field, camera)
                                 : text_of(arguments.scene, scene, field, camera));
 }

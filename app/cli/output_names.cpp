@@ -53,7 +53,6 @@ void check_files(std::span<const NamedFile> inputs, std::span<const NamedFile> o
         }
     }
     for (std::size_t b = 0; b < outputs.size(); ++b) {
-        check_suffix(outputs[b]);
         for (std::size_t a = 0; a < b; ++a) {
             if (!same_file(outputs[a], FileUse::output, outputs[b], FileUse::output)) continue;
             throw UsageError(label_of(outputs[b]) + " is named for two outputs, " +
@@ -65,6 +64,9 @@ void check_files(std::span<const NamedFile> inputs, std::span<const NamedFile> o
             throw Error(label_of(outputs[b]) + ": is " + std::string(input.option) +
                         " itself; name another file to write to");
         }
+    }
+    for (const NamedFile& output : outputs) {
+        if (!output.suffixes.empty()) check_suffix(output);
     }
 }
 

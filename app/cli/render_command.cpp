@@ -70,9 +70,13 @@ Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task
                       Progress& progress) {
     const Clock::time_point start = Clock::now();
     Rendering rendering;
-    rendering.picture =
-        make_picture(scene, arguments.width, arguments.height, *arguments.work.method,
-                     arguments.work.options, arguments.work.threads);
+    try {
+        rendering.picture =
+            make_picture(scene, arguments.width, arguments.height, *arguments.work.method,
+                         arguments.work.options, arguments.work.threads);
+    } catch (const Error& fault) {
+        throw camera_fault(scene, arguments.scene, fault);
+    }
     rendering.seconds.compile = seconds_since(start);
 
     const Clock::time_point compiled = Clock::now();

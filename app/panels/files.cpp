@@ -5,6 +5,7 @@
 #include "app/panels/panels.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
+#include "core/render/canvas.h"
 #include "core/scene/error.h"
 #include "core/scene/read_file.h"
 #include "core/scene/scene_json.h"
@@ -69,7 +70,13 @@ void open_scene(ViewerState& state, const std::filesystem::path& path) {
     Document document = Document::open(path, state.stop);
     const WindowSize size = state.viewport.width > 0 ? state.viewport.size() : WindowSize{16, 9};
     const Scene& scene = document.scene();
-    const Camera camera = camera_of(scene, compile(scene), size.width, size.height);
+    const Camera camera = [&] {
+        try {
+            return camera_of(scene, compile(scene), size.width, size.height);
+        } catch (const Error& fault) {
+            throw camera_fault(scene, path, fault);
+        }
+    }();
     const bool automatic = !scene.camera;
     take_document(state, std::move(document), camera, automatic);
 }

@@ -14,6 +14,9 @@ void run_headless(const HeadlessSettings& settings) {
     // what can be wrong without a frame is said before there is one
     const std::optional<Script> script =
         settings.script ? std::optional(read_script(*settings.script)) : std::nullopt;
+    if (script)
+        check_files(*script, {*settings.script, settings.scene.value_or(""),
+                              settings.screenshot.value_or("")});
 
     const std::unique_ptr<MemoryContext> context = open_memory_context(settings.size);
     EventQueue events(settings.size);

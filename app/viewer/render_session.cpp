@@ -17,6 +17,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -26,6 +27,7 @@
 #include "core/render/canvas.h"
 #include "core/render/render.h"
 #include "core/render/shade.h"
+#include "core/scene/error.h"
 #include "core/trace/methods/method.h"
 
 namespace ivory {
@@ -258,7 +260,13 @@ class RenderSession::Director {
   public:
     explicit Director(Settings settings) : settings_(std::move(settings)) {
         settings_.threads = std::max(settings_.threads, 1);
-        thread_ = std::jthread([this] { direct(); });
+        try {
+            thread_ = std::jthread([this] { direct(); });
+        } catch (const std::system_error& error) {
+            throw Error("the viewer needs a thread besides its own, and none can be started: " +
+                        error.code().message() +
+                        "; end other programs, or allow more processes or memory (ulimit)");
+        }
     }
 
     ~Director() {

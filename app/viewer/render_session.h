@@ -71,6 +71,7 @@ class RenderSession {
         std::function<void()> wake;
     };
 
+    // Throws Error where no thread can be started.
     explicit RenderSession(Settings settings);
     ~RenderSession();
     RenderSession(const RenderSession&) = delete;

@@ -4,12 +4,18 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <utility>
+#include <variant>
 
 #include "core/scene/error.h"
+#include "core/scene/json_reader.h"
 #include "core/scene/read_file.h"
 #include "core/scene/text.h"
+#include "core/scene/write_file.h"
 
 namespace ivory {
 
@@ -19,6 +25,14 @@ using nlohmann::json;
 
 constexpr int largest_side = 16384;  // pixels
 constexpr int most_frames = 100000;
+constexpr double farthest_pixel = 1e6;  // no window reaches there
+constexpr double most_wheel_turns = 1000;
+
+using Words = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 1> scene_suffixes{".json"};
+constexpr std::array<std::string_view, 2> state_suffixes{".json", ".txt"};
+constexpr std::array<std::string_view, 1> picture_suffixes{".png"};
 
 struct KeyWord {
     std::string_view word;
@@ -81,10 +95,30 @@ double number_of(const json& value, const char* what) {
     return value.get<double>();
 }
 
+double number_within(const json& value, const char* what, double most) {
+    const double number = number_of(value, what);
+    if (!(std::abs(number) <= most))
+        refuse(std::string(what) + " has to be from " + number_text(-most) + " to " +
+               number_text(most) + ", not " + shown(value));
+    return number;
+}
+
 WindowPoint point_of(const json& value, const char* what) {
     if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
         refuse(std::string(what) + " has to be [x, y] in pixels, not " + shown(value));
-    return {value[0].get<double>(), value[1].get<double>()};
+    return {number_within(value[0], what, farthest_pixel),
+            number_within(value[1], what, farthest_pixel)};
+}
+
+std::string file_of(const json& value, const char* what, Words suffixes) {
+    const std::string& file = text_of(value, what);
+    std::string suffix = std::filesystem::path(file).extension().string();
+    for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (std::find(suffixes.begin(), suffixes.end(), suffix) == suffixes.end() &&
+        !is_written_straight(file))
+        refuse(std::string(what) + " has to be a file that ends in " + listed(suffixes, "or") +
+               ", not " + shown(value));
+    return file;
 }
 
 MouseButton button_of(const json& value, const char* what) {
@@ -178,7 +212,7 @@ step::Drag drag_of(const json& value, const char* what, bool has_by) {
     if (element == nullptr || handle == nullptr || (has_by && by == nullptr) || !keys.all_taken())
         wrong();
     // a vertex or control point goes by its number
-    const std::string name = handle->is_number_unsigned() ? std::to_string(handle->get<unsigned>())
+    const std::string name = handle->is_number_unsigned() ? std::to_string(handle->get<std::uint64_t>())
                                                           : text_of(*handle, "handle");
     return {{text_of(*element, "element"), name}, has_by ? point_of(*by, "by") : WindowPoint{}};
 }
@@ -229,7 +263,7 @@ step::Any step_of(const json& object, StepKeys& keys) {
         return step::Release{button_of(*value, "release")};
     if (const json* value = keys.take("double_click"))
         return step::DoubleClick{button_of(*value, "double_click")};
-    if (const json* value = keys.take("wheel")) return step::Wheel{number_of(*value, "wheel")};
+    if (const json* value = keys.take("wheel")) return step::Wheel{number_within(*value, "wheel", most_wheel_turns)};
     if (const json* value = keys.take("hold")) return step::Hold{key_of(*value, "hold")};
     if (const json* value = keys.take("let")) return step::Let{key_of(*value, "let")};
     if (const json* value = keys.take("key")) return step::KeyStroke{chord_of(*value)};
@@ -258,10 +292,10 @@ step::Any step_of(const json& object, StepKeys& keys) {
         return step::SetTheme{*value == "light" ? Theme::light : Theme::dark};
     }
     if (const json* value = keys.take("expect")) return expect_of(*value, keys.take("within"));
-    if (const json* value = keys.take("save")) return step::Save{text_of(*value, "save")};
-    if (const json* value = keys.take("state")) return step::WriteState{text_of(*value, "state")};
+    if (const json* value = keys.take("save")) return step::Save{file_of(*value, "save", scene_suffixes)};
+    if (const json* value = keys.take("state")) return step::WriteState{file_of(*value, "state", state_suffixes)};
     if (const json* value = keys.take("screenshot")) {
-        step::Screenshot screenshot{text_of(*value, "screenshot"), false};
+        step::Screenshot screenshot{file_of(*value, "screenshot", picture_suffixes), false};
         if (const json* viewport = keys.take("viewport")) {
             if (!viewport->is_boolean())
                 refuse("viewport has to be true or false, not " + shown(*viewport));
@@ -275,17 +309,54 @@ step::Any step_of(const json& object, StepKeys& keys) {
            (meant ? "; \"" + std::string(*meant) + "\" is" : "; steps are " + listed(step_words)));
 }
 
-step::Any parse_line(std::string_view line) {
-    json object;
+// Of nesting that the reader has bounded.
+json json_of(const JsonValue& value) {
+    struct Convert {
+        json operator()(std::nullptr_t) const { return nullptr; }
+        json operator()(bool is) const { return is; }
+        json operator()(double number) const {
+            // a count is a whole number
+            constexpr double exact = 0x1p53;
+            if (number != std::floor(number) || std::abs(number) > exact ||
+                (number == 0 && std::signbit(number)))
+                return number;
+            if (number < 0) return static_cast<std::int64_t>(number);
+            return static_cast<std::uint64_t>(number);
+        }
+        json operator()(const std::string& text) const { return text; }
+        json operator()(const JsonValue::Array& items) const {
+            json list = json::array();
+            for (const JsonValue& item : items) list.push_back(json_of(item));
+            return list;
+        }
+        json operator()(const JsonValue::Object& members) const {
+            json object = json::object();
+            for (const JsonMember& member : members) object[member.key] = json_of(member.value);
+            return object;
+        }
+    };
+    return std::visit(Convert{}, value.content);
+}
+
+// What the reader says of a text without a name and of one line: ": line 1, column 3: WHAT" or
+// ": POINTER (line 1, column 3): WHAT", without what the caller knows better.
+std::string without_line(std::string what) {
+    what.erase(0, std::string_view(": ").size());
+    constexpr std::string_view line = "line 1, ";
+    const std::size_t at = what.find(line);
+    return at == std::string::npos ? what : what.erase(at, line.size());
+}
+
+json read_line(std::string_view line) {
     try {
-        object = json::parse(line);
-    } catch (const json::parse_error& error) {
-        // nlohmann's message: "[json.exception.parse_error.101] parse error at ...: what"
-        const std::string_view what = error.what();
-        const std::size_t colon = what.find(": ");
-        refuse("not JSON, column " + std::to_string(error.byte) + ": " +
-               printable(colon == std::string_view::npos ? what : what.substr(colon + 2)));
+        return json_of(parse_json(SourceText(line, "")));
+    } catch (const Error& error) {
+        refuse(without_line(error.what()));
     }
+}
+
+step::Any parse_line(std::string_view line) {
+    const json object = read_line(line);
     if (!object.is_object())
         refuse("a step is an object, as {\"wait\": \"final\"}, not " + shown(object));
     StepKeys keys(object);
@@ -329,6 +400,52 @@ Script parse_script(std::string_view text, const std::string& name) {
         }
     }
     return script;
+}
+
+void check_files(const Script& script, const ScriptFiles& others) {
+    enum class Kind { played, opened, final_picture, state, picture, saved };
+    struct Use {
+        Kind kind;
+        int line;  // 0: of the command line
+        FileIdentity file;
+    };
+    std::vector<Use> uses;
+    const auto note = [&](Kind kind, int line, const std::string& path, FileUse how) {
+        if (const auto file = file_identity(path, how)) uses.push_back({kind, line, *file});
+    };
+    note(Kind::played, 0, others.script, FileUse::input);
+    note(Kind::opened, 0, others.scene, FileUse::input);
+    note(Kind::final_picture, 0, others.screenshot, FileUse::output);
+    for (const ScriptLine& line : script.lines) {
+        const std::size_t before = uses.size();
+        std::string path;
+        if (const auto* const save = std::get_if<step::Save>(&line.step)) {
+            path = save->file;
+            note(Kind::saved, line.number, path, FileUse::output);
+        } else if (const auto* const state = std::get_if<step::WriteState>(&line.step)) {
+            path = state->file;
+            note(Kind::state, line.number, path, FileUse::output);
+        } else if (const auto* const picture = std::get_if<step::Screenshot>(&line.step)) {
+            path = picture->file;
+            note(Kind::picture, line.number, path, FileUse::output);
+        }
+        if (uses.size() == before) continue;
+        const Use& use = uses.back();
+        for (std::size_t i = 0; i < before; ++i) {
+            const Use& other = uses[i];
+            // as a person saves over what was opened, and anything anew
+            const bool meant = use.kind == other.kind ||
+                               (use.kind == Kind::saved && other.kind == Kind::opened);
+            if (meant || use.file != other.file) continue;
+            const std::string what = other.kind == Kind::played  ? "the script itself"
+                                     : other.kind == Kind::opened ? "the scene itself"
+                                     : other.kind == Kind::final_picture
+                                         ? "the file of --screenshot"
+                                         : "what line " + std::to_string(other.line) + " writes";
+            throw Error(script.name + ", line " + std::to_string(use.line) + ": " +
+                        in_quotes(path) + " is " + what + "; name another file");
+        }
+    }
 }
 
 Script read_script(const std::filesystem::path& path) {

@@ -136,4 +136,14 @@ struct Script {
 [[nodiscard]] Script parse_script(std::string_view text, const std::string& name);
 [[nodiscard]] Script read_script(const std::filesystem::path& path);
 
+// The files of the call that plays a script; empty: none.
+struct ScriptFiles {
+    std::string script, scene, screenshot;
+};
+
+// Throws Error, with the line, where a step writes over the script, the scene (but to save it), the
+// call's screenshot, or what a step of another kind writes. Links and other spellings are the same
+// file.
+void check_files(const Script& script, const ScriptFiles& others);
+
 }  // namespace ivory

@@ -1,11 +1,14 @@
 #include "app/viewer/script_player.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,6 +17,7 @@
 #include "app/viewer/state_file.h"
 #include "core/render/image_file.h"
 #include "core/scene/error.h"
+#include "core/scene/read_file.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"
 #include "core/scene/write_file.h"
@@ -57,14 +61,42 @@ bool equal_within(const json& is, const json& expected, double within) {
     return is == expected;
 }
 
+// A key in a JSON pointer, as RFC 6901 writes it.
+std::string unescaped(std::string_view key) {
+    std::string plain;
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        const bool escape = key[i] == '~' && i + 1 < key.size();
+        plain += !escape ? key[i] : key[++i] == '1' ? '/' : '~';
+    }
+    return plain;
+}
+
 // The value at a JSON pointer, or of a top-level key; nullptr where there is none.
 const json* find_value(const json& document, const std::string& where) {
     if (!where.starts_with('/')) {
         const auto found = document.find(where);
         return found == document.end() ? nullptr : &*found;
     }
-    const json::json_pointer pointer(where);
-    return document.contains(pointer) ? &document[pointer] : nullptr;
+    const json* value = &document;
+    for (std::string_view rest = where; !rest.empty();) {
+        rest.remove_prefix(1);  // the slash
+        const std::string_view escaped = rest.substr(0, rest.find('/'));
+        rest.remove_prefix(escaped.size());
+        const json* next = nullptr;
+        if (value->is_object()) {
+            const auto found = value->find(unescaped(escaped));
+            if (found != value->end()) next = &*found;
+        } else if (value->is_array()) {
+            std::size_t index = 0;
+            const char* const end = escaped.data() + escaped.size();
+            const auto read = std::from_chars(escaped.data(), end, index);
+            if (read.ec == std::errc() && read.ptr == end && index < value->size())
+                next = &(*value)[index];
+        }
+        if (next == nullptr) return nullptr;
+        value = next;
+    }
+    return value;
 }
 
 Frame cropped(const Frame& frame, const WindowRect& rect) {
@@ -161,7 +193,10 @@ void ScriptPlayer::wait_final() {
     const Clock::time_point start = Clock::now();
     for (turn(); !viewer_.final() || viewer_.next_frame_wanted() == 0; turn()) {
         const PictureState& picture = viewer_.state().picture;
-        if (!picture.fault.empty()) throw Error("there is no picture: " + picture.fault);
+        if (!picture.fault.empty())
+            throw Error("there is no picture of " +
+                        file_label(viewer_.state().document.path().value_or("untitled")) + ": " +
+                        picture.fault);
         if (seconds_since(start) > longest_wait)
             throw Error("the picture is not final after " + std::to_string(longest_wait) +
                         " seconds: " + std::to_string(static_cast<int>(100 * picture.progress)) +
@@ -398,8 +433,12 @@ void ScriptPlayer::take(const step::Drag& step) {
 }
 
 void ScriptPlayer::take(const step::Drop& step) {
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(step.file, ignored);
     turn(FilesDropped{{step.file}});
     settle();
+    if (!is_there)
+        throw Error(in_quotes(step.file) + " is not there to be dropped; name a file that exists");
 }
 
 void ScriptPlayer::take(const step::Resize& step) {

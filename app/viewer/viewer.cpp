@@ -19,6 +19,7 @@
 #include "app/viewer/same_picture.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
+#include "core/render/canvas.h"
 #include "core/render/image_file.h"
 #include "core/render/shade.h"
 #include "core/scene/error.h"
@@ -138,7 +139,13 @@ struct Viewer::Parts {
         if (framed == wanted) return;
         framed = wanted;
         const double aspect = static_cast<double>(wanted.size.width) / wanted.size.height;
-        state.view.camera = default_camera(compile(*wanted.scene).reach_box, aspect);
+        try {
+            state.view.camera = default_camera(compile(*wanted.scene).reach_box, aspect);
+        } catch (const Error& fault) {
+            // the view stays; a dropped file must not end what a person is at
+            state.say_error(
+                camera_fault(*wanted.scene, document.path().value_or("untitled"), fault).what());
+        }
     }
 
     void ask_for_picture(const Input& input, Clock::time_point start) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "core/render/frame.h"
 #include "core/render/shade.h"
 #include "core/render/tiles.h"
+#include "core/scene/error.h"
 #include "core/trace/bundle_surfaces.h"
 #include "core/trace/methods/method.h"
 
@@ -32,6 +34,11 @@ struct Picture {
 // many pixels, compiled by so many threads. Throws Error as make_view and default_camera do.
 [[nodiscard]] Picture make_picture(const Scene& scene, int width, int height, const Method& method,
                                    const MethodOptions& options, int threads = 1);
+
+// What make_picture, make_view or a default camera finds wrong with a scene, with its file and the
+// place: the camera, or the elements where that is the one that frames them.
+[[nodiscard]] Error camera_fault(const Scene& scene, const std::filesystem::path& file,
+                                 const Error& fault);
 
 // A tile as the last job left it.
 struct TileState {

@@ -552,6 +552,30 @@ TEST(CommandLine, InfoAndRenderAgreeOnTheCamera) {
                         .at("camera"));
 }
 
+// For a program the path is the path, whatever a terminal would make of it.
+TEST(CommandLine, InfoGivesThePathAsJson) {
+    const TemporaryFolder folder;
+    for (const std::string name : {"a\nb \"\xC3\xA4\".json", "\xFF.json"}) {
+        fs::copy_file(figure_1, folder / name);
+        const Finished run = run_ivory({"info", "--json", (folder / name).string()});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const std::string path = Json::parse(run.out).at("scene");
+        EXPECT_EQ(path, (folder / (name[0] == 'a' ? name : "\xEF\xBF\xBD.json")).string());
+    }
+}
+
+TEST(CommandLine, ASceneThatNoCameraCanShowIsNamedWithThePlace) {
+    const TemporaryFolder folder;
+    const std::string path = (folder / "s.json").string();
+    put_bytes(path, R"({"ivory": 1, "threshold": 0.5, "elements": [
+        {"shape": "segment", "a": [-1.7e308, 0, 0], "b": [1.7e308, 1.7e308, 1.7e308]}]})");
+    const std::vector<std::vector<std::string>> calls{
+        {"render", path, "--stats", "-", "--size", "8x8"}, {"info", path}};
+    for (const std::vector<std::string>& words : calls) {
+        expect_failure(run_ivory(words), 1, path + ": /elements: ");
+    }
+}
+
 TEST(CommandLine, InfoListsTheMethods) {
     const Finished run = run_ivory({"info", "--methods"});
     EXPECT_EQ(run.status, 0);

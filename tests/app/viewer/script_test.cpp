@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <variant>
 
 #include "core/scene/error.h"
+#include "tests/error_line.h"
+#include "tests/temporary_folder.h"
 
 namespace ivory {
 namespace {
@@ -107,13 +112,70 @@ TEST_P(WrongSteps, AreRefusedWithTheirLine) {
     }
 }
 
+// Deeper than any stack is high, wherever a step may hold a value.
+TEST(Script, BracketsThatNestTooDeepAreRefused) {
+    const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+    for (const std::string& line :
+         {"{\"wait\": " + deep + "}", "{\"expect\": {\"threshold\": " + deep + "}}",
+          "{\"widget\": \"threshold\", \"set\": " + deep + "}", std::string(200000, '[')}) {
+        try {
+            static_cast<void>(parse_script("\n" + line, "s.txt"));
+            FAIL() << line.substr(0, 40);
+        } catch (const Error& error) {
+            const std::string what = error.what();
+            EXPECT_TRUE(what.starts_with("s.txt, line 2: column ")) << what;
+            EXPECT_NE(what.find("brackets nest deeper than"), std::string::npos) << what;
+        }
+    }
+}
+
+TEST(Script, NumbersKeepTheirValues) {
+    const auto value = [](const std::string& number) {
+        return *only_step<step::UseWidget>(R"({"widget": "w", "set": )" + number + "}").value;
+    };
+    EXPECT_EQ(value("7").dump(), "7");
+    EXPECT_EQ(value("-7").dump(), "-7");
+    EXPECT_EQ(value("0.1"), 0.1);
+    EXPECT_EQ(value("1e300"), 1e300);
+    EXPECT_TRUE(std::signbit(value("-0.0").get<double>()));
+}
+
+TEST(Script, AStepWritesOverNothingThatIsReadOrWrittenOtherwise) {
+    const tests::TemporaryFolder folder;
+    const auto path = [&](const std::string& name) { return (folder / name).string(); };
+    std::ofstream(folder / "s.json") << "scene";
+    std::ofstream(folder / "script.json") << "script";
+    std::filesystem::create_symlink("s.json", folder / "link.json");
+    const ScriptFiles files{path("script.json"), path("s.json"), path("end.png")};
+    const auto check = [&](const std::string& steps) {
+        check_files(parse_script(steps, "s.txt"), files);
+    };
+    const auto step = [&](const std::string& word, const std::string& name) {
+        return "{\"" + word + "\": \"" + path(name) + "\"}\n";
+    };
+    EXPECT_NO_THROW(check(step("save", "s.json") + step("state", "a.json") +
+                          step("state", "a.json") + step("screenshot", "a.png")));
+    EXPECT_NE(tests::error_line([&] { check("\n" + step("state", "link.json")); })
+                  .find("link.json\" is the scene itself"),
+              std::string::npos);
+    EXPECT_NE(tests::error_line([&] { check(step("save", "script.json")); })
+                  .find("is the script itself"),
+              std::string::npos);
+    EXPECT_NE(tests::error_line([&] { check(step("screenshot", "./end.png")); })
+                  .find("is the file of --screenshot"),
+              std::string::npos);
+    EXPECT_NE(tests::error_line([&] { check(step("save", "b.json") + step("state", "b.json")); })
+                  .find("s.txt, line 2: "),
+              std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Script, WrongSteps,
     testing::Values(
         Wrong{R"({"wait": "fnal"})", R"(wait has to be "final")"},
         Wrong{R"({"waits": "final"})", R"("waits" is no step; "wait" is)"},
         Wrong{R"({"xyzzy": 1})", "steps are wait, frames"}, Wrong{R"({})", "is no step"},
-        Wrong{R"([1])", "a step is an object"}, Wrong{R"({"wait": "final")", "not JSON, column 17"},
+        Wrong{R"([1])", "a step is an object"}, Wrong{R"({"wait": "final")", "column 17: the text ends inside"},
         Wrong{R"({"frames": -1})", "frames has to be a whole number"},
         Wrong{R"({"frames": 1.5})", "frames has to be a whole number"},
         Wrong{R"({"mouse": [1]})", "mouse has to be [x, y]"},
@@ -122,6 +184,15 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"({"hold": "hyper"})", "is no key"},
         Wrong{R"({"key": "meta+x"})", R"("meta" is no modifier)"},
         Wrong{R"({"key": "ctrl+"})", "is no key"}, Wrong{R"({"key": ""})", "has to be a text"},
+        Wrong{R"({"wheel": 1e400})", "the number \"1e400\" is not finite as a double"},
+        Wrong{R"({"wheel": 1e300})", "wheel has to be from -1000 to 1000, not 1e+300"},
+        Wrong{R"({"mouse": [1e300, 0]})", "mouse has to be from -1000000 to 1000000"},
+        Wrong{R"({"pick": [0, -1e7]})", "pick has to be from -1000000 to 1000000"},
+        Wrong{R"({"frames": 1, "frames": 2})", "stands here for the second time"},
+        Wrong{R"({"wait": nul})", "not JSON: invalid literal"},
+        Wrong{R"({"screenshot": "a.jpg"})", "screenshot has to be a file that ends in .png"},
+        Wrong{R"({"save": "a"})", "save has to be a file that ends in .json"},
+        Wrong{R"({"state": "a.png"})", "state has to be a file that ends in .json or .txt"},
         Wrong{R"({"wheel": "1"})", "wheel has to be a number"},
         Wrong{R"({"drag": {"element": "e", "handle": "a"}})", "drag has to be"},
         Wrong{R"({"drag": {"element": "e", "handle": "a", "by": [1, 2], "x": 1}})",

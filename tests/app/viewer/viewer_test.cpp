@@ -21,6 +21,7 @@
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "tests/app/platform/memory_contexts.h"
+#include "tests/error_line.h"
 #include "tests/temporary_folder.h"
 #include "tests/tools/random_scene.h"
 
@@ -294,11 +295,28 @@ TEST_P(InMemory, ABrokenFileLeavesThePictureAndSaysWhy) {
     driven.viewer().hide_overlay(true);
     driven.play(R"({"frames": 1})");
     const auto before = colors_of(driven.viewer().read_back(), viewport);
-    driven.play(R"({"drop": "/nonexistent.ivory.json"})");
+    const std::string line = tests::error_line(
+        [&] { driven.play(R"({"drop": "/nonexistent.ivory.json"})"); });
+    EXPECT_NE(line.find("line 1: \"/nonexistent.ivory.json\" is not there"), std::string::npos);
     EXPECT_EQ(colors_of(driven.viewer().read_back(), viewport), before);
     EXPECT_NE(driven.state().message.text.find("/nonexistent.ivory.json"), std::string::npos);
     EXPECT_TRUE(driven.state().message.error);
     EXPECT_EQ(driven.state().document.path(), std::filesystem::path(figure_1));
+}
+
+TEST_P(InMemory, WhatIsExpectedWhereNothingIsFailsWithItsLine) {
+    const auto context = context_or_skip({500, 400});
+    if (!context) return;
+    Driven driven(*context, {500, 400});
+    for (const char* where : {"/elements/99999999999999999999", "/elements/-1", "/elements/a",
+                              "/elements/00x", "/threshold/0", "nothing"}) {
+        const std::string line = tests::error_line([&] {
+            driven.play(R"({"expect": {")" + std::string(where) + R"(": 1}})");
+        });
+        EXPECT_NE(line.find("line 1: expected"), std::string::npos) << line;
+        EXPECT_NE(line.find("neither the scene nor the state has it"), std::string::npos) << line;
+    }
+    driven.play(R"({"expect": {"/elements/0/shape": "point"}})");
 }
 
 TEST_P(InMemory, AFrameIsWantedOnlyWhileSomethingChanges) {
