@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <system_error>
 #include <variant>
 
 #include "app/cli/arguments.h"
@@ -45,6 +47,11 @@ int main(int count, char** words) {
         return complain(error.what(), wrong_usage);
     } catch (const std::bad_alloc&) {
         return complain("out of memory; take a smaller picture or scene", failed);
+    } catch (const std::system_error& error) {
+        return complain(("the system refuses: " + error.code().message() +
+                         "; end other programs, or allow more memory and processes (ulimit)")
+                            .c_str(),
+                        failed);
     } catch (const std::exception& error) {
         // A system call that the interrupt woke may have been taken for a failure.
         return ivory::interrupted() ? ivory::interrupted_status() : complain(error.what(), failed);

@@ -215,7 +215,8 @@ void check(const ViewerArguments& viewer) {
         check_files(
             std::array{NamedFile{"the scene", viewer.scene.value_or(""), {}},
                        NamedFile{"the script", viewer.script.value_or(""), {}}},
-            std::array{NamedFile{"--screenshot", viewer.screenshot.value_or(""), picture_suffixes}});
+            std::array{
+                NamedFile{"--screenshot", viewer.screenshot.value_or(""), picture_suffixes}});
         return;
     }
     if (viewer.script) throw UsageError("--script needs --headless");

@@ -46,10 +46,10 @@ void check_files(std::span<const NamedFile> inputs, std::span<const NamedFile> o
             if (!same_file(inputs[a], FileUse::input, inputs[b], FileUse::input)) continue;
             const std::string both =
                 std::string(inputs[a].option) + " and " + std::string(inputs[b].option);
-            throw UsageError(inputs[b].path == "-"
-                                 ? "standard input cannot be " + both + " at once; name a file for one"
-                                 : printable(inputs[b].path) + " is named for " + both +
-                                       "; name another file for one of them");
+            throw UsageError(inputs[b].path == "-" ? "standard input cannot be " + both +
+                                                         " at once; name a file for one of them"
+                                                   : printable(inputs[b].path) + " is named for " +
+                                                         both + "; name another for one of them");
         }
     }
     for (std::size_t b = 0; b < outputs.size(); ++b) {

@@ -212,8 +212,9 @@ step::Drag drag_of(const json& value, const char* what, bool has_by) {
     if (element == nullptr || handle == nullptr || (has_by && by == nullptr) || !keys.all_taken())
         wrong();
     // a vertex or control point goes by its number
-    const std::string name = handle->is_number_unsigned() ? std::to_string(handle->get<std::uint64_t>())
-                                                          : text_of(*handle, "handle");
+    const std::string name = handle->is_number_unsigned()
+                                 ? std::to_string(handle->get<std::uint64_t>())
+                                 : text_of(*handle, "handle");
     return {{text_of(*element, "element"), name}, has_by ? point_of(*by, "by") : WindowPoint{}};
 }
 
@@ -263,7 +264,8 @@ step::Any step_of(const json& object, StepKeys& keys) {
         return step::Release{button_of(*value, "release")};
     if (const json* value = keys.take("double_click"))
         return step::DoubleClick{button_of(*value, "double_click")};
-    if (const json* value = keys.take("wheel")) return step::Wheel{number_within(*value, "wheel", most_wheel_turns)};
+    if (const json* value = keys.take("wheel"))
+        return step::Wheel{number_within(*value, "wheel", most_wheel_turns)};
     if (const json* value = keys.take("hold")) return step::Hold{key_of(*value, "hold")};
     if (const json* value = keys.take("let")) return step::Let{key_of(*value, "let")};
     if (const json* value = keys.take("key")) return step::KeyStroke{chord_of(*value)};
@@ -292,10 +294,13 @@ step::Any step_of(const json& object, StepKeys& keys) {
         return step::SetTheme{*value == "light" ? Theme::light : Theme::dark};
     }
     if (const json* value = keys.take("expect")) return expect_of(*value, keys.take("within"));
-    if (const json* value = keys.take("save")) return step::Save{file_of(*value, "save", scene_suffixes)};
-    if (const json* value = keys.take("state")) return step::WriteState{file_of(*value, "state", state_suffixes)};
+    if (const json* value = keys.take("save"))
+        return step::Save{file_of(*value, "save", scene_suffixes)};
+    if (const json* value = keys.take("state"))
+        return step::WriteState{file_of(*value, "state", state_suffixes)};
     if (const json* value = keys.take("screenshot")) {
-        step::Screenshot screenshot{file_of(*value, "screenshot", picture_suffixes), false};
+        step::Screenshot screenshot{file_of(*value, "screenshot", picture_suffixes),
+                                    false};
         if (const json* viewport = keys.take("viewport")) {
             if (!viewport->is_boolean())
                 refuse("viewport has to be true or false, not " + shown(*viewport));

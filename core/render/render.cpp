@@ -803,7 +803,7 @@ class FrameJob::Work {
     int running_ = 0;
     std::exception_ptr failure_;
     std::vector<Tally> tallies_;
-    Tally* own_ = nullptr;  // of the caller, who works where there are no workers; null: none, or done
+    Tally* own_ = nullptr;  // the caller's, who works where no workers do; null: none, or done
     std::vector<std::jthread> workers_;  // last: joined before anything that they use is gone
 };
 

@@ -45,8 +45,8 @@ bool may(const fs::path& path, int what) {
     return ::faccessat(AT_FDCWD, path.c_str(), what, AT_EACCESS) == 0;
 }
 
-// Whether the file may be written but not replaced: another's, in another's folder that is sticky as
-// /tmp is.
+// Whether the file may be written but not replaced: another's, in another's folder that is sticky
+// as /tmp is.
 bool belongs_to_others(const fs::path& folder, const struct stat& file) {
     struct stat status {};
     const uid_t user = ::geteuid();
