@@ -48,6 +48,7 @@ int main(int count, char** words) {
     } catch (const std::bad_alloc&) {
         return complain("out of memory; take a smaller picture or scene", failed);
     } catch (const std::system_error& error) {
+        if (ivory::interrupted()) return ivory::interrupted_status();
         return complain(("the system refuses: " + error.code().message() +
                          "; end other programs, or allow more memory and processes (ulimit)")
                             .c_str(),
