@@ -314,33 +314,40 @@ step::Any step_of(const json& object, StepKeys& keys) {
            (meant ? "; \"" + std::string(*meant) + "\" is" : "; steps are " + listed(step_words)));
 }
 
+// As a whole number where it is one, which a count has to be.
+json number_json(double number) {
+    constexpr double exact = 0x1p53;
+    const bool is_whole = number == std::floor(number) && std::abs(number) <= exact &&
+                          !(number == 0 && std::signbit(number));
+    if (!is_whole) return number;
+    if (number < 0) return static_cast<std::int64_t>(number);
+    return static_cast<std::uint64_t>(number);
+}
+
 // Of nesting that the reader has bounded.
 json json_of(const JsonValue& value) {
-    struct Convert {
-        json operator()(std::nullptr_t) const { return nullptr; }
-        json operator()(bool is) const { return is; }
-        json operator()(double number) const {
-            // a count is a whole number
-            constexpr double exact = 0x1p53;
-            if (number != std::floor(number) || std::abs(number) > exact ||
-                (number == 0 && std::signbit(number)))
-                return number;
-            if (number < 0) return static_cast<std::int64_t>(number);
-            return static_cast<std::uint64_t>(number);
-        }
-        json operator()(const std::string& text) const { return text; }
-        json operator()(const JsonValue::Array& items) const {
+    switch (value.kind()) {
+        case JsonKind::null:
+            break;
+        case JsonKind::boolean:
+            return value.boolean();
+        case JsonKind::number:
+            return number_json(value.number());
+        case JsonKind::text:
+            return value.text();
+        case JsonKind::list: {
             json list = json::array();
-            for (const JsonValue& item : items) list.push_back(json_of(item));
+            for (const JsonValue item : value.items()) list.push_back(json_of(item));
             return list;
         }
-        json operator()(const JsonValue::Object& members) const {
+        case JsonKind::object: {
             json object = json::object();
-            for (const JsonMember& member : members) object[member.key] = json_of(member.value);
+            for (const JsonMember member : value.members())
+                object[member.key.text()] = json_of(member.value);
             return object;
         }
-    };
-    return std::visit(Convert{}, value.content);
+    }
+    return nullptr;
 }
 
 // What the reader says of a text without a name and of one line: ": line 1, column 3: WHAT" or
@@ -354,7 +361,8 @@ std::string without_line(std::string what) {
 
 json read_line(std::string_view line) {
     try {
-        return json_of(parse_json(SourceText(line, "")));
+        const SourceText source(line, "");
+        return json_of(parse_json(source).root());
     } catch (const Error& error) {
         refuse(without_line(error.what()));
     }
