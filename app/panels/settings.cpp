@@ -67,24 +67,22 @@ struct Access {
     UserSettings& all;
 
     std::string take(const Switch& setting, const JsonValue& value) const {
-        const bool* const on = std::get_if<bool>(&value.content);
-        if (on == nullptr) return "true or false";
-        all.*setting.value = *on;
+        if (value.kind() != JsonKind::boolean) return "true or false";
+        all.*setting.value = value.boolean();
         return "";
     }
     std::string take(const Whole& setting, const JsonValue& value) const {
-        const double* const number = std::get_if<double>(&value.content);
-        if (number == nullptr || !(*number >= setting.least && *number <= setting.greatest) ||
-            std::floor(*number) != *number)
+        const double number = value.kind() == JsonKind::number ? value.number() : NAN;
+        if (!(number >= setting.least && number <= setting.greatest) ||
+            std::floor(number) != number)
             return "a whole number from " + std::to_string(setting.least) + " to " +
                    std::to_string(setting.greatest);
-        all.*setting.value = static_cast<int>(*number);
+        all.*setting.value = static_cast<int>(number);
         return "";
     }
     std::string take(const Look& setting, const JsonValue& value) const {
-        const std::string* const word = std::get_if<std::string>(&value.content);
-        for (std::size_t i = 0; word != nullptr && i < theme_words.size(); ++i) {
-            if (*word != theme_words[i]) continue;
+        for (std::size_t i = 0; i < theme_words.size(); ++i) {
+            if (value.kind() != JsonKind::text || !value.is_text(theme_words[i])) continue;
             all.*setting.value = static_cast<Theme>(i);
             return "";
         }
@@ -108,25 +106,27 @@ std::string quoted(const std::string& text) {
 
 // A value of a member that is not ours.
 std::string text_of(const JsonValue& value) {
-    struct Writer {
-        std::string operator()(std::nullptr_t) const { return "null"; }
-        std::string operator()(bool on) const { return on ? "true" : "false"; }
-        std::string operator()(double number) const { return number_text(number); }
-        std::string operator()(const std::string& text) const { return quoted(text); }
-        std::string operator()(const JsonValue::Array& items) const {
-            std::string all;
-            for (const JsonValue& item : items) all += (all.empty() ? "" : ", ") + text_of(item);
+    std::string all;
+    switch (value.kind()) {
+        case JsonKind::null:
+            break;
+        case JsonKind::boolean:
+            return value.boolean() ? "true" : "false";
+        case JsonKind::number:
+            return number_text(value.number());
+        case JsonKind::text:
+            return quoted(value.text());
+        case JsonKind::list:
+            for (const JsonValue item : value.items())
+                all += (all.empty() ? "" : ", ") + text_of(item);
             return "[" + all + "]";
-        }
-        std::string operator()(const JsonValue::Object& members) const {
-            std::string all;
-            for (const JsonMember& member : members)
-                all +=
-                    (all.empty() ? "" : ", ") + quoted(member.key) + ": " + text_of(member.value);
+        case JsonKind::object:
+            for (const JsonMember member : value.members())
+                all += (all.empty() ? "" : ", ") + quoted(member.key.text()) + ": " +
+                       text_of(member.value);
             return "{" + all + "}";
-        }
-    };
-    return std::visit(Writer(), value.content);
+    }
+    return "null";
 }
 
 // Nothing where there is no file. Throws Error where it is none that could be read.
@@ -140,11 +140,11 @@ std::optional<std::string> bytes_of(const fs::path& file) {
     return read_file(file);
 }
 
-// Throws Error at what is no JSON, or no object.
-JsonValue parse_settings(const SourceText& source) {
-    JsonValue root = parse_json(source);
-    if (!std::holds_alternative<JsonValue::Object>(root.content))
-        throw source.fault(root.offset, "",
+// The root, which is an object. Throws Error where it is none.
+JsonValue settings_of(const SourceText& source, const JsonDocument& document) {
+    const JsonValue root = document.root();
+    if (root.kind() != JsonKind::object)
+        throw source.fault(root.offset(), "",
                            root.description() + " stands here; it must be an object");
     return root;
 }
@@ -216,16 +216,16 @@ UserSettings SettingsFile::read() {
     if (!bytes) return last_;
     const SourceText source(*bytes, file_label(*file_));
     try {
-        const JsonValue root = parse_settings(source);
-        const auto& members = std::get<JsonValue::Object>(root.content);
+        const JsonDocument document = parse_json(source);
+        const JsonValue root = settings_of(source, document);
         for (const Setting& setting : settings) {
-            const JsonValue* const value = find_member(members, setting.key);
-            if (value == nullptr) continue;
+            const std::optional<JsonValue> value = find_member(root, setting.key);
+            if (!value) continue;
             const std::string expected = std::visit(
                 [&](const auto& kind) { return Access{last_}.take(kind, *value); }, setting.kind);
             if (expected.empty()) continue;
             complain(source
-                         .fault(value->offset, pointer_into("", setting.key),
+                         .fault(value->offset(), pointer_into("", setting.key),
                                 value->description() + " stands here; it must be " + expected +
                                     "; taken as " + text_of(setting, last_))
                          .what());
@@ -264,9 +264,9 @@ std::string SettingsFile::new_text(const UserSettings& now) {
     if (const std::optional<std::string> bytes = bytes_of(*file_)) {
         const SourceText source(*bytes, file_label(*file_));
         try {
-            const JsonValue root = parse_settings(source);
-            for (const JsonMember& member : std::get<JsonValue::Object>(root.content))
-                members.emplace_back(member.key, text_of(member.value));
+            const JsonDocument document = parse_json(source);
+            for (const JsonMember member : settings_of(source, document).members())
+                members.emplace_back(member.key.text(), text_of(member.value));
         } catch (const Error& error) {
             if (!set_aside(error.what())) throw;
         }
