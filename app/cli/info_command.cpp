@@ -13,6 +13,7 @@
 #include "core/field/field.h"
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
+#include "core/render/framing.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"

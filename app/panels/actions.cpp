@@ -10,6 +10,8 @@
 #include "app/panels/files.h"
 #include "app/panels/panels.h"
 #include "core/field/field.h"
+#include "core/render/framing.h"
+#include "core/scene/error.h"
 
 namespace ivory {
 
@@ -55,12 +57,24 @@ void set_camera(ViewerState& state, const Camera& camera) {
     state.view.automatic = false;
 }
 
-// The box that Home frames: all that the visible elements reach, or else their skeletons.
-Box3 box_of_all(const Scene& scene) {
-    Box3 box = compile(scene).reach_box;
-    if (!box.empty()) return box;
+// The surface, or, where it is empty, the elements that could make one.
+void frame_all(ViewerState& state) {
+    const Scene& scene = state.document.scene();
+    const Projection view = state.projection();
+    const double aspect = static_cast<double>(view.size().width) / view.size().height;
+    try {
+        const Framing framing = frame_surface(compile(scene), view.camera(), aspect);
+        if (!framing.empty || scene.elements.empty()) {
+            set_camera(state, framing.camera);
+            return;
+        }
+    } catch (const Error& error) {
+        state.say_error(error.what());
+        return;
+    }
+    Box3 box;
     for (const Element& element : scene.elements) box.include(box_around(element));
-    return box;
+    set_camera(state, framed(view, box));
 }
 
 void remove_selected(ViewerState& state) {
@@ -181,7 +195,7 @@ void run(ViewerState& state, Action action) {
             return;
         }
         case Action::frame_all:
-            set_camera(state, framed(state.projection(), box_of_all(state.document.scene())));
+            frame_all(state);
             return;
         case Action::focus:
             focus_selected(state);

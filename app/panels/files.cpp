@@ -6,6 +6,7 @@
 #include "core/field/field.h"
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
+#include "core/render/framing.h"
 #include "core/scene/error.h"
 #include "core/scene/read_file.h"
 #include "core/scene/scene_json.h"
@@ -109,7 +110,7 @@ void perform(ViewerState& state, const Pending& pending) {
                 open_scene(state, pending.path);
                 break;
             case Pending::Kind::start_anew:
-                take_document(state, Document(), default_camera({}, 16.0 / 9), true);
+                take_document(state, Document(), default_camera(compile({}), 16.0 / 9), true);
                 break;
             case Pending::Kind::quit:
                 state.quit = true;

@@ -20,6 +20,7 @@
 #include "core/field/field.h"
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
+#include "core/render/framing.h"
 #include "core/render/image_file.h"
 #include "core/render/shade.h"
 #include "core/scene/error.h"
@@ -140,7 +141,7 @@ struct Viewer::Parts {
         framed = wanted;
         const double aspect = static_cast<double>(wanted.size.width) / wanted.size.height;
         try {
-            state.view.camera = default_camera(compile(*wanted.scene).reach_box, aspect);
+            state.view.camera = default_camera(compile(*wanted.scene), aspect);
         } catch (const Error& fault) {
             // the view stays; a dropped file must not end what a person is at
             state.say_error(

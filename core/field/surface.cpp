@@ -95,6 +95,13 @@ FieldSample sample(const Field& field, const Vec3d& p) {
                   [&](std::size_t i) { return p - field.a(i); });
 }
 
+// v = from_a / w and m / w carry a few u each; at the lambda of a segment, off by a few u |v| / |m|,
+// the distance is no less than at the best one, and within that times |m| of it. A circle's axis is
+// a unit vector within 4 u, so rho and h are off by a few u |v|. With u = 2^-53, 256 u is ample.
+double distance_in_widths(const Field& field, std::size_t i, const Vec3d& from_a) {
+    return std::sqrt(nearest(field, i, from_a).s);
+}
+
 double element_value(const Field& field, std::size_t i, const Vec3d& p) {
     const double s = nearest(field, i, p - field.a(i)).s;
     return field.strength[i] * midpoint(kernel_at(field.kernel[i], s));

@@ -25,6 +25,10 @@ struct FieldSample {
 // At the point p, over all elements.
 [[nodiscard]] FieldSample sample(const Field& field, const Vec3d& p);
 
+// d / w of element i at the point that is `from_a` from its a, its position or centre, to nearest:
+// off by less than 2^-45 (|from_a| + its length + its radius) / w.
+[[nodiscard]] double distance_in_widths(const Field& field, std::size_t i, const Vec3d& from_a);
+
 // F_i at the point p.
 [[nodiscard]] double element_value(const Field& field, std::size_t i, const Vec3d& p);
 

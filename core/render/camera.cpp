@@ -42,33 +42,6 @@ View make_view(const Camera& camera) {
     return view;
 }
 
-Camera default_camera(const Box3& reach_box, double aspect) {
-    const Box3 box = reach_box.empty() ? Box3{{-1, -1, -1}, {1, 1, 1}} : reach_box;
-    Camera camera;
-    camera.target = 0.5 * box.lo + 0.5 * box.hi;
-
-    // The sphere just fits a cone of half angle a at the distance radius / sin a.
-    const double radius = length(0.5 * box.hi - 0.5 * box.lo);
-    const double vertical = camera.fov / 2 * radians_per_degree;
-    const double horizontal = std::atan(std::tan(vertical) * aspect);
-    double distance = 1.1 * radius / std::sin(std::min(vertical, horizontal));
-    // A box that is hardly more than a point: far enough for the position to be another double.
-    const double size =
-        std::max({std::abs(camera.target.x), std::abs(camera.target.y), std::abs(camera.target.z)});
-    distance = std::max(distance, size > 0 ? 1e-9 * size : distance > 0 ? 0.0 : 1.0);
-
-    camera.position = camera.target + distance * unit(Vec3d{0.4, 0.3, 1});
-    if (!finite(camera.position)) {
-        throw Error("the scene is too large to be framed; give it a camera or move it nearer to 0");
-    }
-    return camera;
-}
-
-Camera camera_of(const Scene& scene, const Field& field, int width, int height) {
-    if (scene.camera) return *scene.camera;
-    return default_camera(field.reach_box, static_cast<double>(width) / height);
-}
-
 double plane_u(const View& view, int width, int height, int i) {
     return (2 * (i + 0.5) / width - 1) * view.s * width / height;
 }

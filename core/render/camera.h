@@ -1,5 +1,5 @@
 // From a camera to its rays: the frame of the view, the ray of each pixel, the cone around a
-// rectangle of them, and the camera of a scene that names none.
+// rectangle of them. The camera of a scene that names none: framing.h.
 #pragma once
 
 #include "core/field/bundle.h"
@@ -23,15 +23,6 @@ struct View {
 // Throws Error where the camera has a fault (core/scene/scene_fault.h) or its frame is lost to
 // rounding.
 [[nodiscard]] View make_view(const Camera& camera);
-
-// The camera of a scene without one: it looks at the centre of the box from the direction
-// (0.4, 0.3, 1), 1.1 times as far away as the sphere around the box needs to fit the smaller angle
-// of view. `aspect` is width / height; for an empty box the one of [-1, 1]^3 is taken.
-// Throws Error where the box is too large for doubles.
-[[nodiscard]] Camera default_camera(const Box3& reach_box, double aspect);
-
-// The scene's camera, or the default one for a picture of that many pixels.
-[[nodiscard]] Camera camera_of(const Scene& scene, const Field& field, int width, int height);
 
 // The ray through the middle of pixel (i, j), j counted from the top, of a picture of
 // width x height:

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/render/framing.h"
 #include "core/scene/read_file.h"
 
 namespace ivory {

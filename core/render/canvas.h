@@ -30,7 +30,7 @@ struct Picture {
     MethodOptions options;
 };
 
-// The picture of a scene through its camera, or the default one (core/render/camera.h), in that
+// The picture of a scene through its camera, or the one that frames it (core/render/framing.h), in that
 // many pixels, compiled by so many threads. Throws Error as make_view and default_camera do.
 [[nodiscard]] Picture make_picture(const Scene& scene, int width, int height, const Method& method,
                                    const MethodOptions& options, int threads = 1);

@@ -187,14 +187,6 @@ TEST(Frame, TheSphereAroundTheBoxFitsBothWays) {
     }
 }
 
-TEST(Frame, IsTheCameraOfASceneWithoutOne) {
-    const Box3 box{{-1, -2, -1}, {3, 5, 1}};
-    const Camera wanted = default_camera(box, 1280.0 / 720);
-    const Camera is = framed({wanted, size}, box);
-    expect_near(is.position, wanted.position, 1e-12);
-    expect_near(is.target, wanted.target, 1e-12);
-}
-
 TEST(Centre, KeepsDistanceAndDirection) {
     const Camera before{{1, 2, 8}, {0, 0, 0}};
     const Camera after = centred({before, size}, {3, -1, 2});

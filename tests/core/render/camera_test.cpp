@@ -176,53 +176,6 @@ TEST(Camera, AConeOfMoreThanAHemisphereIsEveryDirection) {
     EXPECT_GT(cone_around(view, 64, 64, {0, 0, 64, 64}).sine, 1);
 }
 
-// The sphere around the box touches the nearer planes of the view from inside, at 1.1 times the
-// distance that this takes.
-TEST(Camera, TheDefaultCameraFitsTheSphereIntoTheSmallerAngle) {
-    const Box3 box{{-1, -2, 3}, {4, 1, 5}};
-    const double radius = 0.5 * std::hypot(5, 3, 2);
-    for (const double aspect : {16.0 / 9, 1.0, 9.0 / 16, 0.1}) {
-        const Camera camera = default_camera(box, aspect);
-        EXPECT_EQ(camera.target, (Vec3d{1.5, -0.5, 4}));
-        EXPECT_EQ(camera.fov, 40);
-        EXPECT_EQ(camera.up, (Vec3d{0, 1, 0}));
-        const Vec3d back = camera.position - camera.target;
-        const double distance = std::sqrt(dot(back, back));
-        EXPECT_NEAR(dot(back, unit(Vec3d{0.4, 0.3, 1})), distance, 1e-12 * distance);
-        const double vertical = 20 * std::numbers::pi / 180;
-        const double smaller = std::min(vertical, std::atan(aspect * std::tan(vertical)));
-        EXPECT_NEAR(distance, 1.1 * radius / std::sin(smaller), 1e-12 * distance);
-    }
-}
-
-TEST(Camera, AnEmptySurfaceIsSeenAsTheUnitBox) {
-    const Camera empty = default_camera({}, 1.5);
-    EXPECT_EQ(empty, default_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5));
-    EXPECT_EQ(empty.target, (Vec3d{0, 0, 0}));
-}
-
-TEST(Camera, ABoxThatIsAPointIsStillSeen) {
-    for (const double at : {0.0, 1.0, -1e12}) {
-        const Camera camera = default_camera({{at, at, at}, {at, at, at}}, 1);
-        EXPECT_NO_THROW(static_cast<void>(make_view(camera))) << at;
-    }
-}
-
-TEST(Camera, ABoxBeyondTheDoublesIsRefused) {
-    EXPECT_NE(tests::error_line([] {
-                  static_cast<void>(default_camera({{-1e308, 0, 0}, {1.7e308, 1e308, 1}}, 1));
-              }).find("give it a camera"),
-              std::string::npos);
-}
-
-TEST(Camera, TheScenesOwnCameraIsTaken) {
-    Scene scene;
-    scene.camera = Camera{{1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 25};
-    EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), *scene.camera);
-    scene.camera.reset();
-    EXPECT_EQ(camera_of(scene, compile(scene), 100, 50), default_camera({}, 2));
-}
-
 TEST(PrimaryDirections, AreThoseOfPrimaryRaysToTheBit) {
     const View view = make_view({{3.1, -2.7, 5.3}, {0.1, 0.2, -0.3}, {0.2, 1, 0.1}, 47.3});
     constexpr int width = 131, height = 77;

@@ -10,6 +10,7 @@
 
 #include "core/field/surface.h"
 #include "core/render/camera.h"
+#include "core/render/framing.h"
 #include "core/scene/scene_json.h"
 #include "core/trace/clip.h"
 #include "core/trace/trace.h"

@@ -13,6 +13,7 @@
 #include "core/field/surface.h"
 #include "core/interval/quick.h"
 #include "core/render/camera.h"
+#include "core/render/framing.h"
 #include "core/scene/scene_json.h"
 #include "core/trace/methods/affine_form.h"
 #include "core/trace/methods/lipschitz.h"

@@ -1,0 +1,509 @@
+#include "core/render/framing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <vector>
+
+#include "core/field/bounding_box.h"
+#include "core/field/kernel.h"
+#include "core/field/surface.h"
+#include "core/math/direction.h"
+#include "core/scene/error.h"
+#include "core/scene/scene_fault.h"
+
+namespace ivory {
+namespace {
+
+// Aimed at; what is left to `framed_share` is for the rounding of the picture's rays.
+constexpr double aimed_share = 0.958;
+
+// Of the picture's width or height: how near a side has to be known.
+constexpr double side_tolerance = 1.0 / 160;
+// Of the distance: how near the surface's depth has to be known, for the target.
+constexpr double depth_tolerance = 1.0 / 32;
+
+// Cells that are that much smaller than the tolerance are not cut any more.
+constexpr double least_of_tolerance = 1.0 / 8;
+constexpr double least_of_root = 0x1p-40;
+
+// The work is limited by what it looks at, so that it depends on the scene alone.
+constexpr std::size_t most_cells = 20000;
+constexpr std::size_t most_evaluations = std::size_t{1} << 19;
+constexpr std::size_t most_evaluations_each = 4;  // and so many more for each element
+
+// So few clusters are looked at as elements.
+constexpr std::size_t most_opened = 24;
+
+// An element whose |F| stays below this share of T, divided by how many are listed, is no longer
+// listed: what it can add is kept.
+constexpr double share_left_out = 0x1p-9;
+
+// Of up to so many elements, balls around each bound the solid along a normal.
+constexpr std::size_t most_balls = 512;
+
+// More than what a few roundings of lengths can cost, relative to the largest of them.
+constexpr double slack = 0x1p-44;
+
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
+
+bool finite(const Vec3d& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// How far a box reaches along n.
+double support(const Box3& box, const Vec3d& n) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += n[k] * (n[k] > 0 ? box.hi[k] : box.lo[k]);
+    return sum;
+}
+
+// The normals, outward, of the planes through the eye that bound the middle of the picture, and the
+// two along the view:
+//   p is within the window of half width k at distance 1 before the eye e
+//       <=>  (p - e) . right <= k (p - e) . forward  and  -(p - e) . right <= k (p - e) . forward,
+// which adds up to (p - e) . forward >= 0; likewise for top.
+enum Side : std::size_t { to_right, to_left, to_top, to_bottom, to_far, to_near, sides };
+
+struct Frustum {
+    Vec3d forward, right, top;
+    double half_width = 0, half_height = 0;
+    std::array<Vec3d, sides> normal;
+};
+
+Frustum frustum_of(const View& view, double aspect) {
+    Frustum frustum{view.forward, view.right, view.top, aimed_share * view.s * aspect,
+                  aimed_share * view.s, {}};
+    const Vec3d back = -1.0 * frustum.forward;
+    frustum.normal = {frustum.right + frustum.half_width * back,
+                     -1.0 * frustum.right + frustum.half_width * back,
+                     frustum.top + frustum.half_height * back,
+                     -1.0 * frustum.top + frustum.half_height * back, frustum.forward, back};
+    return frustum;
+}
+
+using Reach = std::array<double, sides>;
+
+// A cube, relative to the middle of the search, and what matters in it. All of a list's elements,
+// clusters' members and what was left out stand for the whole field there: f <= the sum of the
+// listed F_i + left_out - T.
+struct Cell {
+    Vec3d center;
+    double half = 0;
+    std::vector<std::uint32_t> elements, clusters;
+    double left_out = 0;
+    double value = 0;  // f at the centre, about: only a reason to stop
+    bool outside = false;
+    std::size_t first_child = 0;  // 0: not cut
+};
+
+// Bounds how far {f >= 0} reaches along the normals of a window.
+class Search {
+  public:
+    Search(const Field& field, const Frustum& frustum) : field_(field), frustum_(frustum) {}
+
+    // Relative to middle(), rounded up. Returns false where the solid is proved to be empty. The
+    // field's box must be neither empty nor infinite.
+    [[nodiscard]] bool run() {
+        if (!start()) return false;
+        for (;;) {
+            for (std::size_t side = 0; side < sides; ++side) {
+                if (!open_top(side)) return false;
+            }
+            const std::size_t side = worst_side();
+            if (side == sides || cells_.size() > most_cells ||
+                evaluations_ > most_evaluations + most_evaluations_each * field_.size()) {
+                break;
+            }
+            const std::size_t top = queue_[side].top().second;
+            const double half = cells_[top].half;
+            if (half <= least_of_tolerance * tolerance(side) || half <= least_of_root * root_half_) {
+                seen_[side] = reach_[side];
+            } else {
+                cut(top);
+            }
+        }
+        for (std::size_t side = 0; side < sides; ++side) reach_[side] += 64 * slack * radius_;
+        return true;
+    }
+
+    [[nodiscard]] const Reach& reach() const { return reach_; }
+    [[nodiscard]] Vec3d middle() const { return middle_; }
+    // All of the solid is that near to the middle.
+    [[nodiscard]] double radius() const { return radius_; }
+    [[nodiscard]] std::size_t cells() const { return cells_.size(); }
+    [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+
+  private:
+    bool start() {
+        const Box3& box = field_.box;
+        middle_ = 0.5 * box.lo + 0.5 * box.hi;
+        double most = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            box_.lo[k] = sub_down(box.lo[k], middle_[k]);
+            box_.hi[k] = add_up(box.hi[k], -middle_[k]);
+            most = std::max({most, -box_.lo[k], box_.hi[k]});
+        }
+        radius_ = std::sqrt(3.0) * most * (1 + 16 * slack);
+        // A power of two: the middles of all cells are doubles.
+        int exponent = 0;
+        std::frexp(most, &exponent);
+        root_half_ = std::ldexp(1.0, exponent);
+
+        seen_.fill(-infinity<double>);
+        balls_ = reach_of_balls();
+        Cell whole;
+        whole.half = root_half_;
+        if (!field_.clusters.empty()) {
+            whole.clusters = all_clusters(field_).clusters;
+        } else {
+            whole.elements = all_elements(field_).elements;
+        }
+        cells_.push_back(std::move(whole));
+        for (std::size_t side = 0; side < sides; ++side) queue_[side].push({0, 0});
+        cut(0);
+        return true;
+    }
+
+    // How far the balls of core/field/bounding_box.h reach.
+    [[nodiscard]] Reach reach_of_balls() const {
+        Reach reach;
+        reach.fill(infinity<double>);
+        if (field_.size() > most_balls) return reach;
+        reach.fill(-infinity<double>);
+        const std::size_t positive = count_positive(field_);
+        for (std::size_t i = 0; i < field_.size(); ++i) {
+            const double radius = ivory::reach(field_, i, positive);
+            if (radius < 0) continue;
+            Box3 skeleton = skeleton_box(field_, i);
+            skeleton = {skeleton.lo - middle_, skeleton.hi - middle_};
+            const double size = length(skeleton.lo) + length(skeleton.hi) + radius;
+            for (std::size_t side = 0; side < sides; ++side) {
+                const Vec3d& n = frustum_.normal[side];
+                reach[side] = std::max(
+                    reach[side], support(skeleton, n) + length(n) * (radius + slack * size));
+            }
+        }
+        return reach;
+    }
+
+    // Puts the farthest cell that has not been cut on top of the side's queue. False: there is none.
+    bool open_top(std::size_t side) {
+        Queue& queue = queue_[side];
+        while (!queue.empty() && cells_[queue.top().second].first_child != 0) {
+            const std::size_t first = cells_[queue.top().second].first_child;
+            queue.pop();
+            for (std::size_t child = first; child < first + 8; ++child) {
+                if (!cells_[child].outside) queue.push({reach_of(cells_[child], side), child});
+            }
+        }
+        if (queue.empty()) return false;
+        reach_[side] = std::min(queue.top().first, balls_[side]);
+        return true;
+    }
+
+    [[nodiscard]] double reach_of(const Cell& cell, std::size_t side) const {
+        Box3 part;
+        for (std::size_t k = 0; k < 3; ++k) {
+            part.lo[k] = std::max(cell.center[k] - cell.half, box_.lo[k]);
+            part.hi[k] = std::min(cell.center[k] + cell.half, box_.hi[k]);
+        }
+        return support(part, frustum_.normal[side]);
+    }
+
+    // The distance that the sides known so far ask for, and a share of what is seen at it.
+    [[nodiscard]] double tolerance(std::size_t side) const {
+        const double distance =
+            std::max((reach_[to_right] + reach_[to_left]) / (2 * frustum_.half_width),
+                     (reach_[to_top] + reach_[to_bottom]) / (2 * frustum_.half_height));
+        if (side >= to_far) return depth_tolerance * distance;
+        return 2 * side_tolerance * distance *
+               (side < to_top ? frustum_.half_width : frustum_.half_height);
+    }
+
+    // The one that is known worst, compared with its tolerance; `sides` where all are good enough.
+    [[nodiscard]] std::size_t worst_side() const {
+        std::size_t worst = sides;
+        double most = 1;
+        for (std::size_t side = 0; side < sides; ++side) {
+            const double gap = (reach_[side] - seen_[side]) / tolerance(side);
+            if (gap > most) {
+                most = gap;
+                worst = side;
+            }
+        }
+        return worst;
+    }
+
+    void cut(std::size_t parent) {
+        const std::size_t first = cells_.size();
+        cells_.resize(first + 8);
+        cells_[parent].first_child = first;
+        for (std::size_t n = 0; n < 8; ++n) {
+            Cell& child = cells_[first + n];
+            child.half = 0.5 * cells_[parent].half;
+            for (std::size_t k = 0; k < 3; ++k) {
+                child.center[k] =
+                    cells_[parent].center[k] + ((n >> k & 1) != 0 ? child.half : -child.half);
+            }
+            look(cells_[parent], child);
+            if (child.outside || !(child.value > 0)) continue;
+            for (std::size_t side = 0; side < sides; ++side) {
+                seen_[side] = std::max(seen_[side], dot(frustum_.normal[side], child.center));
+            }
+        }
+        cells_[parent].elements = cells_[parent].clusters = {};
+    }
+
+    // What the field can be in a cell, from the list of the one that it was cut out of.
+    void look(const Cell& parent, Cell& cell) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (cell.center[k] + cell.half < box_.lo[k] || cell.center[k] - cell.half > box_.hi[k]) {
+                cell.outside = true;
+                return;
+            }
+        }
+        Sum sum;
+        sum.least = share_left_out * field_.threshold /
+                    static_cast<double>(parent.elements.size() +
+                                        cluster_size * parent.clusters.size());
+        cell.left_out = parent.left_out;
+        for (const std::uint32_t cluster : parent.clusters) add_cluster(cluster, cell, sum);
+        if (!cell.clusters.empty() && cell.clusters.size() <= most_opened) {
+            sum.above = sum.value = 0;
+            for (const std::uint32_t cluster : cell.clusters) {
+                const std::uint32_t end = field_.clusters.first[cluster + 1];
+                for (std::uint32_t i = field_.clusters.first[cluster]; i < end; ++i) {
+                    add_element(i, cell, sum);
+                }
+            }
+            cell.clusters.clear();
+        }
+        for (const std::uint32_t i : parent.elements) add_element(i, cell, sum);
+
+        const double count = static_cast<double>(sum.count + 8);
+        evaluations_ += sum.count;
+        const double rounding = count * 0x1p-51 * (sum.magnitude + cell.left_out + field_.threshold);
+        cell.outside = sum.above + cell.left_out + rounding < field_.threshold;
+        cell.value = sum.value - field_.threshold;
+    }
+
+    struct Sum {
+        double above = 0;      // of upper bounds of the listed F_i
+        double magnitude = 0;  // of what was added
+        double value = 0;      // of the F_i at the centre
+        double least = 0;      // what counts as nothing
+        std::size_t count = 0;
+    };
+
+    // The members add up to no more than above k(s) where s is the least in the cell.
+    void add_cluster(std::uint32_t cluster, Cell& cell, Sum& sum) const {
+        const Clusters& all = field_.clusters;
+        const Vec3d place{all.x[cluster], all.y[cluster], all.z[cluster]};
+        const Vec3d from = place - middle_;
+        double nearest = 0, at_center = 0, size = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double off = std::abs(from[k] - cell.center[k]);
+            const double beyond = std::max(off - cell.half, 0.0);
+            nearest += beyond * beyond;
+            at_center += off * off;
+            size += std::abs(from[k]) + std::abs(cell.center[k]);
+        }
+        const double distance =
+            std::sqrt(nearest) - all.radius[cluster] - slack * (size + all.radius[cluster]);
+        const double s = distance > 0 ? distance * distance * all.inverse_square[cluster] : 0;
+        const KernelKind kernel = field_.kernel[all.first[cluster]];
+        const double k = kernel_at(kernel, s * (1 - slack)).hi;
+        const double most = all.above[cluster] * k * (1 + slack);
+        ++sum.count;
+        if (std::max(most, all.below[cluster] * k) <= sum.least) {
+            cell.left_out += most;
+            return;
+        }
+        cell.clusters.push_back(cluster);
+        sum.above += most;
+        sum.magnitude += most;
+        const double spread = all.radius[cluster] * all.radius[cluster];
+        if (2 * spread * all.inverse_square[cluster] < 1) {
+            sum.value += (all.above[cluster] - all.below[cluster]) *
+                         midpoint(kernel_at(kernel, at_center * all.inverse_square[cluster]));
+        }
+    }
+
+    void add_element(std::uint32_t i, Cell& cell, Sum& sum) const {
+        const double b = field_.strength[i], width = field_.width[i];
+        const Vec3d from = (middle_ - field_.a(i)) + cell.center;
+        double nearest = 0, farthest = 0, q = 0;
+        if (field_.shape[i] == Shape::point) {
+            double s = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double off = std::abs(from[k]) / width, half = cell.half / width;
+                const double beyond = std::max(off - half, 0.0);
+                nearest += beyond * beyond;
+                farthest += (off + half) * (off + half);
+                s += off * off;
+            }
+            q = std::sqrt(s);
+            nearest = std::sqrt(nearest);
+            farthest = std::sqrt(farthest);
+        } else {
+            // q changes by no more than |p - p'| / w from p to p'.
+            constexpr double half_diagonal = 1.7320508075688774;  // of a cube, rounded up
+            q = distance_in_widths(field_, i, from);
+            nearest = q - half_diagonal * cell.half / width;
+            farthest = q + half_diagonal * cell.half / width;
+        }
+        const double lost = slack *
+                            (2 * std::abs(cell.center.x) + 2 * std::abs(cell.center.y) +
+                             2 * std::abs(cell.center.z) + 4 * length_of(from) +
+                             4 * std::max(field_.length[i], field_.radius[i])) /
+                            width;
+        nearest = nearest - lost > 0 ? nearest - lost : 0;
+        farthest = (farthest + lost) * (1 + slack);
+        const double near_s = nearest * nearest * (1 - slack);
+        const double largest = kernel_at(field_.kernel[i], near_s).hi;
+        ++sum.count;
+        if (std::abs(b) * largest <= sum.least) {
+            if (b > 0) cell.left_out += b * largest * (1 + slack);
+            return;
+        }
+        cell.elements.push_back(i);
+        // What is not a number is out of the range of doubles: 0 is a bound of what carves.
+        const double far_s = farthest * farthest * (1 + slack);
+        const double bound = b > 0 ? b * largest
+                             : far_s < infinity<double>
+                                 ? b * kernel_at(field_.kernel[i], far_s).lo
+                                 : 0;
+        sum.above += bound;
+        sum.magnitude += std::abs(bound);
+        sum.value += b * midpoint(kernel_at(field_.kernel[i], q * q));
+    }
+
+    static double length_of(const Vec3d& v) {
+        return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    }
+
+    // What reaches farthest first.
+    using Queue = std::priority_queue<std::pair<double, std::size_t>>;
+
+    const Field& field_;
+    const Frustum& frustum_;
+    Vec3d middle_;
+    Box3 box_;  // relative to the middle, as all else
+    double radius_ = 0, root_half_ = 0;
+    std::vector<Cell> cells_;
+    std::array<Queue, sides> queue_;
+    Reach reach_{};  // no point of the solid is farther
+    Reach seen_{};   // a point of the solid is about that far
+    Reach balls_{};
+    std::size_t evaluations_ = 0;
+};
+
+// What is to be framed: how far it reaches from `middle`, and that it is within `radius` of it.
+struct Extent {
+    Reach reach{};
+    Vec3d middle;
+    double radius = 0;
+};
+
+Extent extent_of(const Box3& box, const Frustum& frustum) {
+    Extent extent;
+    extent.middle = 0.5 * box.lo + 0.5 * box.hi;
+    Box3 around;
+    for (std::size_t k = 0; k < 3; ++k) {
+        around.lo[k] = sub_down(box.lo[k], extent.middle[k]);
+        around.hi[k] = sub_up(box.hi[k], extent.middle[k]);
+    }
+    extent.radius = std::max(length(around.lo), length(around.hi)) * (1 + slack);
+    for (std::size_t side = 0; side < sides; ++side) {
+        extent.reach[side] = support(around, frustum.normal[side]) + 64 * slack * extent.radius;
+    }
+    return extent;
+}
+
+// All that is to be framed is within the middle of the picture of this very camera, whose numbers
+// were rounded. With n the normal that `extent` was found for, m the one of the camera's own frame,
+// e the eye, and p within `radius` of the middle c:
+//   m . (p - e) <= n . (p - c) + |m - n| radius - m . (e - c).
+bool is_framed(const Extent& extent, const Frustum& wanted, const Camera& camera, double aspect) {
+    if (find_fault(camera)) return false;
+    const Vec3d away = camera.position - extent.middle;
+    Frustum frustum;
+    try {
+        frustum = frustum_of(make_view(camera), aspect);
+    } catch (const Error&) {
+        return false;  // the frame is lost to rounding: farther away it is not
+    }
+    for (std::size_t side = 0; side < to_far; ++side) {
+        const Vec3d &m = frustum.normal[side], &n = wanted.normal[side];
+        const double rounding = 64 * slack * (length(away) + extent.radius) * length(m);
+        const double beyond =
+            extent.reach[side] + length(m - n) * extent.radius - dot(m, away) + rounding;
+        if (!(beyond < 0)) return false;
+    }
+    return true;
+}
+
+// The eye is so far back that both pairs of opposite planes leave room, and half way between the
+// planes of each.
+Camera camera_for(const Extent& extent, const Frustum& frustum, const Camera& seen_as,
+                  double aspect) {
+    const Reach& reach = extent.reach;
+    const double needed =
+        std::max((reach[to_right] + reach[to_left]) / (2 * frustum.half_width),
+                 (reach[to_top] + reach[to_bottom]) / (2 * frustum.half_height));
+    const Vec3d across = 0.5 * (reach[to_right] - reach[to_left]) * frustum.right +
+                         0.5 * (reach[to_top] - reach[to_bottom]) * frustum.top;
+    const double depth = 0.5 * (reach[to_far] - reach[to_near]);
+    Camera camera = seen_as;
+    camera.target = extent.middle + (across + depth * frustum.forward);
+
+    // Beside large coordinates a double is a coarse step; the direction has to survive it.
+    constexpr double least_step = 0x1p-40;
+    const Vec3d& at = camera.target;
+    const double size = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+    const double least = size > 0 ? least_step * size : needed + depth > 0 ? 0.0 : 1.0;
+    for (double more = 0x1p-12; more < 0x1p60; more *= 2) {
+        const double away = std::max(needed * (1 + more) + depth, least * (1 + more));
+        camera.position = extent.middle + (across + (depth - away) * frustum.forward);
+        if (!finite(camera.position) || !finite(camera.target)) break;
+        if (is_framed(extent, frustum, camera, aspect)) return camera;
+    }
+    throw Error("the scene is too large to be framed; give it a camera or move it nearer to 0");
+}
+
+}  // namespace
+
+Framing frame_surface(const Field& field, const Camera& seen_as, double aspect) {
+    const Frustum frustum = frustum_of(make_view(seen_as), aspect);
+    Framing framing;
+    Extent extent;
+    framing.empty = field.box.empty();
+    if (!framing.empty) {
+        Search search(field, frustum);
+        framing.empty = !search.run();
+        framing.cells = search.cells();
+        framing.element_evaluations = search.evaluations();
+        extent = {search.reach(), search.middle(), search.radius()};
+    }
+    if (framing.empty) extent = extent_of({{-1, -1, -1}, {1, 1, 1}}, frustum);
+    framing.camera = camera_for(extent, frustum, seen_as, aspect);
+    return framing;
+}
+
+Camera default_camera(const Field& field, double aspect) {
+    Camera from_there;
+    from_there.position = unit(Vec3d{0.4, 0.3, 1});
+    return frame_surface(field, from_there, aspect).camera;
+}
+
+Camera camera_of(const Scene& scene, const Field& field, int width, int height) {
+    if (scene.camera) return *scene.camera;
+    return default_camera(field, static_cast<double>(width) / height);
+}
+
+}  // namespace ivory
