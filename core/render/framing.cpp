@@ -32,12 +32,13 @@ constexpr double least_of_tolerance = 1.0 / 8;
 constexpr double least_of_root = 0x1p-40;
 
 // The work is limited by what it looks at, so that it depends on the scene alone.
-constexpr std::size_t most_cells = 20000;
-constexpr std::size_t most_evaluations = std::size_t{1} << 19;
+constexpr std::size_t most_cells = 8192;
+constexpr std::size_t most_evaluations = std::size_t{1} << 16;
 constexpr std::size_t most_evaluations_each = 4;  // and so many more for each element
 
-// So few clusters are looked at as elements.
+// So few clusters are looked at as elements, and so few tell roughly what f is at the centre.
 constexpr std::size_t most_opened = 24;
+constexpr std::size_t most_estimated = 1024;
 
 // An element whose |F| stays below this share of T, divided by how many are listed, is no longer
 // listed: what it can add is kept.
@@ -153,6 +154,12 @@ class Search {
         int exponent = 0;
         std::frexp(most, &exponent);
         root_half_ = std::ldexp(1.0, exponent);
+
+        strongest_ = 0;
+        for (const double b : field_.strength) strongest_ = std::max(strongest_, std::abs(b));
+        const Clusters& all = field_.clusters;
+        for (const double b : all.above) strongest_ = std::max(strongest_, b);
+        for (const double b : all.below) strongest_ = std::max(strongest_, b);
 
         seen_.fill(-infinity<double>);
         balls_ = reach_of_balls();
@@ -271,6 +278,8 @@ class Search {
         sum.least = share_left_out * field_.threshold /
                     static_cast<double>(parent.elements.size() +
                                         cluster_size * parent.clusters.size());
+        sum.far = far_beyond(sum.least);
+        sum.estimated = parent.clusters.size() <= most_estimated;
         cell.left_out = parent.left_out;
         for (const std::uint32_t cluster : parent.clusters) add_cluster(cluster, cell, sum);
         if (!cell.clusters.empty() && cell.clusters.size() <= most_opened) {
@@ -292,11 +301,22 @@ class Search {
         cell.value = sum.value - field_.threshold;
     }
 
+    // An s at and beyond which |b| k(s) <= least certainly holds for every element and cluster of a
+    // Blinn kernel; the others end at 1.
+    [[nodiscard]] double far_beyond(double least) const {
+        const double s = std::log(strongest_ / least) + 1e-6;
+        const bool holds =
+            s > 0 && s < 600 && mul_up(strongest_, kernel_at(KernelKind::blinn, s).hi) <= least;
+        return holds ? s : infinity<double>;
+    }
+
     struct Sum {
         double above = 0;      // of upper bounds of the listed F_i
         double magnitude = 0;  // of what was added
         double value = 0;      // of the F_i at the centre
         double least = 0;      // what counts as nothing
+        double far = 0;        // and from which s on a Blinn kernel does
+        bool estimated = true;  // clusters add to `value`
         std::size_t count = 0;
     };
 
@@ -315,11 +335,16 @@ class Search {
         }
         const double distance =
             std::sqrt(nearest) - all.radius[cluster] - slack * (size + all.radius[cluster]);
-        const double s = distance > 0 ? distance * distance * all.inverse_square[cluster] : 0;
+        const double s =
+            distance > 0 ? distance * distance * all.inverse_square[cluster] * (1 - slack) : 0;
         const KernelKind kernel = field_.kernel[all.first[cluster]];
-        const double k = kernel_at(kernel, s * (1 - slack)).hi;
-        const double most = all.above[cluster] * k * (1 + slack);
         ++sum.count;
+        if (kernel == KernelKind::blinn ? s >= sum.far : s >= 1) {
+            if (kernel == KernelKind::blinn) cell.left_out += sum.least;
+            return;
+        }
+        const double k = s > 0 ? kernel_at(kernel, s).hi : 1;
+        const double most = all.above[cluster] * k * (1 + slack);
         if (std::max(most, all.below[cluster] * k) <= sum.least) {
             cell.left_out += most;
             return;
@@ -328,7 +353,7 @@ class Search {
         sum.above += most;
         sum.magnitude += most;
         const double spread = all.radius[cluster] * all.radius[cluster];
-        if (2 * spread * all.inverse_square[cluster] < 1) {
+        if (sum.estimated && 2 * spread * all.inverse_square[cluster] < 1) {
             sum.value += (all.above[cluster] - all.below[cluster]) *
                          midpoint(kernel_at(kernel, at_center * all.inverse_square[cluster]));
         }
@@ -365,8 +390,12 @@ class Search {
         nearest = nearest - lost > 0 ? nearest - lost : 0;
         farthest = (farthest + lost) * (1 + slack);
         const double near_s = nearest * nearest * (1 - slack);
-        const double largest = kernel_at(field_.kernel[i], near_s).hi;
         ++sum.count;
+        if (field_.kernel[i] == KernelKind::blinn ? near_s >= sum.far : near_s >= 1) {
+            if (field_.kernel[i] == KernelKind::blinn) cell.left_out += sum.least;
+            return;
+        }
+        const double largest = near_s > 0 ? kernel_at(field_.kernel[i], near_s).hi : 1;
         if (std::abs(b) * largest <= sum.least) {
             if (b > 0) cell.left_out += b * largest * (1 + slack);
             return;
@@ -395,6 +424,7 @@ class Search {
     Vec3d middle_;
     Box3 box_;  // relative to the middle, as all else
     double radius_ = 0, root_half_ = 0;
+    double strongest_ = 0;  // the greatest |b|, of elements and of clusters
     std::vector<Cell> cells_;
     std::array<Queue, sides> queue_;
     Reach reach_{};  // no point of the solid is farther
