@@ -36,9 +36,8 @@ constexpr std::size_t most_cells = 8192;
 constexpr std::size_t most_evaluations = std::size_t{1} << 16;
 constexpr std::size_t most_evaluations_each = 4;  // and so many more for each element
 
-// So few clusters are looked at as elements, and so few tell roughly what f is at the centre.
-constexpr std::size_t most_opened = 24;
-constexpr std::size_t most_estimated = 1024;
+// So many clusters that follow each other are a block: large cells look at blocks.
+constexpr std::size_t block_size = 16;
 
 // An element whose |F| stays below this share of T, divided by how many are listed, is no longer
 // listed: what it can add is kept.
@@ -89,13 +88,21 @@ Frustum frustum_of(const View& view, double aspect) {
 
 using Reach = std::array<double, sides>;
 
-// A cube, relative to the middle of the search, and what matters in it. All of a list's elements,
-// clusters' members and what was left out stand for the whole field there: f <= the sum of the
-// listed F_i + left_out - T.
+// Elements bounded together, as in core/field/clusters.h: a cluster, or a block of clusters.
+struct Ball {
+    Vec3d center;
+    double radius = 0, above = 0, below = 0, inverse_square = 0;
+    KernelKind kernel = KernelKind::blinn;
+    std::uint32_t first = 0, end = 0;  // elements of a cluster, clusters of a block
+};
+
+// A cube, relative to the middle of the search, and what matters in it. The elements, the members
+// of clusters and blocks, and what was left out stand for the whole field there: f <= the sum of
+// the listed F_i + left_out - T.
 struct Cell {
     Vec3d center;
     double half = 0;
-    std::vector<std::uint32_t> elements, clusters;
+    std::vector<std::uint32_t> elements, clusters, blocks;
     double left_out = 0;
     double value = 0;  // f at the centre, about: only a reason to stop
     bool outside = false;
@@ -155,25 +162,63 @@ class Search {
         std::frexp(most, &exponent);
         root_half_ = std::ldexp(1.0, exponent);
 
-        strongest_ = 0;
-        for (const double b : field_.strength) strongest_ = std::max(strongest_, std::abs(b));
-        const Clusters& all = field_.clusters;
-        for (const double b : all.above) strongest_ = std::max(strongest_, b);
-        for (const double b : all.below) strongest_ = std::max(strongest_, b);
-
         seen_.fill(-infinity<double>);
         balls_ = reach_of_balls();
         Cell whole;
         whole.half = root_half_;
-        if (!field_.clusters.empty()) {
-            whole.clusters = all_clusters(field_).clusters;
-        } else {
+        if (field_.clusters.empty()) {
             whole.elements = all_elements(field_).elements;
+        } else {
+            make_blocks();
+            for (std::uint32_t n = 0; n < blocks_.size(); ++n) whole.blocks.push_back(n);
+        }
+        for (const double b : field_.strength) strongest_ = std::max(strongest_, std::abs(b));
+        for (const Ball& block : blocks_) {
+            strongest_ = std::max({strongest_, block.above, block.below});
         }
         cells_.push_back(std::move(whole));
         for (std::size_t side = 0; side < sides; ++side) queue_[side].push({0, 0});
         cut(0);
         return true;
+    }
+
+    [[nodiscard]] Ball cluster(std::uint32_t n) const {
+        const Clusters& all = field_.clusters;
+        return {{all.x[n], all.y[n], all.z[n]}, all.radius[n], all.above[n], all.below[n],
+                all.inverse_square[n], field_.kernel[all.first[n]], all.first[n], all.first[n + 1]};
+    }
+
+    // Clusters of one group follow each other along a curve through space.
+    void make_blocks() {
+        const Clusters& all = field_.clusters;
+        for (std::size_t group = 0; group < field_groups; ++group) {
+            const std::uint32_t group_end = all.first_of_group[group + 1];
+            for (std::uint32_t first = all.first_of_group[group]; first < group_end;) {
+                Ball block = cluster(first);
+                block.first = first;
+                block.end = std::min<std::uint32_t>(first + block_size, group_end);
+                Box3 box;
+                for (std::uint32_t n = first; n < block.end; ++n) {
+                    const Vec3d& at = cluster(n).center;
+                    box.include({at, at});
+                }
+                block.center = 0.5 * box.lo + 0.5 * box.hi;
+                block.radius = block.above = block.below = 0;
+                for (std::uint32_t n = first; n < block.end; ++n) {
+                    const Ball ball = cluster(n);
+                    block.radius = std::max(
+                        block.radius, length(ball.center - block.center) + ball.radius);
+                    block.above += ball.above;
+                    block.below += ball.below;
+                    block.inverse_square = std::min(block.inverse_square, ball.inverse_square);
+                }
+                block.radius *= 1 + slack;
+                block.above *= 1 + slack;
+                block.below *= 1 + slack;
+                first = block.end;
+                blocks_.push_back(block);
+            }
+        }
     }
 
     // How far the balls of core/field/bounding_box.h reach.
@@ -263,7 +308,7 @@ class Search {
                 seen_[side] = std::max(seen_[side], dot(frustum_.normal[side], child.center));
             }
         }
-        cells_[parent].elements = cells_[parent].clusters = {};
+        cells_[parent].elements = cells_[parent].clusters = cells_[parent].blocks = {};
     }
 
     // What the field can be in a cell, from the list of the one that it was cut out of.
@@ -276,22 +321,13 @@ class Search {
         }
         Sum sum;
         sum.least = share_left_out * field_.threshold /
-                    static_cast<double>(parent.elements.size() +
-                                        cluster_size * parent.clusters.size());
+                    static_cast<double>(
+                        parent.elements.size() +
+                        cluster_size * (parent.clusters.size() + block_size * parent.blocks.size()));
         sum.far = far_beyond(sum.least);
-        sum.estimated = parent.clusters.size() <= most_estimated;
         cell.left_out = parent.left_out;
-        for (const std::uint32_t cluster : parent.clusters) add_cluster(cluster, cell, sum);
-        if (!cell.clusters.empty() && cell.clusters.size() <= most_opened) {
-            sum.above = sum.value = 0;
-            for (const std::uint32_t cluster : cell.clusters) {
-                const std::uint32_t end = field_.clusters.first[cluster + 1];
-                for (std::uint32_t i = field_.clusters.first[cluster]; i < end; ++i) {
-                    add_element(i, cell, sum);
-                }
-            }
-            cell.clusters.clear();
-        }
+        for (const std::uint32_t n : parent.blocks) add_block(n, cell, sum);
+        for (const std::uint32_t n : parent.clusters) add_cluster(n, cell, sum);
         for (const std::uint32_t i : parent.elements) add_element(i, cell, sum);
 
         const double count = static_cast<double>(sum.count + 8);
@@ -316,16 +352,43 @@ class Search {
         double value = 0;      // of the F_i at the centre
         double least = 0;      // what counts as nothing
         double far = 0;        // and from which s on a Blinn kernel does
-        bool estimated = true;  // clusters add to `value`
         std::size_t count = 0;
     };
 
+    // The members of a ball that is no larger than the cell stand together; those of a larger one
+    // each for itself.
+    void add_block(std::uint32_t n, Cell& cell, Sum& sum) const {
+        const Ball& block = blocks_[n];
+        switch (add_ball(block, cell, sum)) {
+            case Added::nothing:
+                return;
+            case Added::together:
+                cell.blocks.push_back(n);
+                return;
+            case Added::none_yet:
+                for (std::uint32_t m = block.first; m < block.end; ++m) add_cluster(m, cell, sum);
+        }
+    }
+
+    void add_cluster(std::uint32_t n, Cell& cell, Sum& sum) const {
+        const Ball ball = cluster(n);
+        switch (add_ball(ball, cell, sum)) {
+            case Added::nothing:
+                return;
+            case Added::together:
+                cell.clusters.push_back(n);
+                return;
+            case Added::none_yet:
+                for (std::uint32_t i = ball.first; i < ball.end; ++i) add_element(i, cell, sum);
+        }
+    }
+
+    enum class Added : std::uint8_t { nothing, together, none_yet };
+
     // The members add up to no more than above k(s) where s is the least in the cell.
-    void add_cluster(std::uint32_t cluster, Cell& cell, Sum& sum) const {
-        const Clusters& all = field_.clusters;
-        const Vec3d place{all.x[cluster], all.y[cluster], all.z[cluster]};
-        const Vec3d from = place - middle_;
-        double nearest = 0, at_center = 0, size = 0;
+    [[nodiscard]] Added add_ball(const Ball& ball, Cell& cell, Sum& sum) const {
+        const Vec3d from = ball.center - middle_;
+        double nearest = 0, at_center = 0, size = ball.radius;
         for (std::size_t k = 0; k < 3; ++k) {
             const double off = std::abs(from[k] - cell.center[k]);
             const double beyond = std::max(off - cell.half, 0.0);
@@ -333,30 +396,25 @@ class Search {
             at_center += off * off;
             size += std::abs(from[k]) + std::abs(cell.center[k]);
         }
-        const double distance =
-            std::sqrt(nearest) - all.radius[cluster] - slack * (size + all.radius[cluster]);
+        const double distance = std::sqrt(nearest) - ball.radius - slack * size;
         const double s =
-            distance > 0 ? distance * distance * all.inverse_square[cluster] * (1 - slack) : 0;
-        const KernelKind kernel = field_.kernel[all.first[cluster]];
+            distance > 0 ? distance * distance * ball.inverse_square * (1 - slack) : 0;
+        const bool is_blinn = ball.kernel == KernelKind::blinn;
         ++sum.count;
-        if (kernel == KernelKind::blinn ? s >= sum.far : s >= 1) {
-            if (kernel == KernelKind::blinn) cell.left_out += sum.least;
-            return;
+        if (s >= (is_blinn ? sum.far : 1)) {
+            if (is_blinn) cell.left_out += sum.least;
+            return Added::nothing;
         }
-        const double k = s > 0 ? kernel_at(kernel, s).hi : 1;
-        const double most = all.above[cluster] * k * (1 + slack);
-        if (std::max(most, all.below[cluster] * k) <= sum.least) {
-            cell.left_out += most;
-            return;
-        }
-        cell.clusters.push_back(cluster);
+        if (ball.radius > cell.half) return Added::none_yet;
+        const double most =
+            ball.above * (s > 0 ? kernel_at(ball.kernel, s).hi : 1) * (1 + slack);
         sum.above += most;
         sum.magnitude += most;
-        const double spread = all.radius[cluster] * all.radius[cluster];
-        if (sum.estimated && 2 * spread * all.inverse_square[cluster] < 1) {
-            sum.value += (all.above[cluster] - all.below[cluster]) *
-                         midpoint(kernel_at(kernel, at_center * all.inverse_square[cluster]));
+        if (2 * ball.radius * ball.radius * ball.inverse_square < 1) {
+            sum.value += (ball.above - ball.below) *
+                         midpoint(kernel_at(ball.kernel, at_center * ball.inverse_square));
         }
+        return Added::together;
     }
 
     void add_element(std::uint32_t i, Cell& cell, Sum& sum) const {
@@ -391,8 +449,9 @@ class Search {
         farthest = (farthest + lost) * (1 + slack);
         const double near_s = nearest * nearest * (1 - slack);
         ++sum.count;
-        if (field_.kernel[i] == KernelKind::blinn ? near_s >= sum.far : near_s >= 1) {
-            if (field_.kernel[i] == KernelKind::blinn) cell.left_out += sum.least;
+        const bool is_blinn = field_.kernel[i] == KernelKind::blinn;
+        if (near_s >= (is_blinn ? sum.far : 1)) {
+            if (is_blinn) cell.left_out += sum.least;
             return;
         }
         const double largest = near_s > 0 ? kernel_at(field_.kernel[i], near_s).hi : 1;
@@ -424,8 +483,9 @@ class Search {
     Vec3d middle_;
     Box3 box_;  // relative to the middle, as all else
     double radius_ = 0, root_half_ = 0;
-    double strongest_ = 0;  // the greatest |b|, of elements and of clusters
+    double strongest_ = 0;  // the greatest |b|, of elements, and of blocks all together
     std::vector<Cell> cells_;
+    std::vector<Ball> blocks_;
     std::array<Queue, sides> queue_;
     Reach reach_{};  // no point of the solid is farther
     Reach seen_{};   // a point of the solid is about that far
