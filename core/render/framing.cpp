@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <numbers>
 #include <queue>
+#include <utility>
 #include <vector>
 
 #include "core/field/bounding_box.h"
@@ -23,18 +24,18 @@ namespace {
 constexpr double aimed_share = 0.958;
 
 // Of the picture's width or height: how near a side has to be known.
-constexpr double side_tolerance = 1.0 / 160;
+constexpr double side_tolerance = 1.0 / 100;
 // Of the distance: how near the surface's depth has to be known, for the target.
-constexpr double depth_tolerance = 1.0 / 32;
+constexpr double depth_tolerance = 1.0 / 12;
 
 // Cells that are that much smaller than the tolerance are not cut any more.
-constexpr double least_of_tolerance = 1.0 / 8;
+constexpr double least_of_tolerance = 0.4;
 constexpr double least_of_root = 0x1p-40;
 
 // The work is limited by what it looks at, so that it depends on the scene alone.
 constexpr std::size_t most_cells = 8192;
 constexpr std::size_t most_evaluations = std::size_t{1} << 16;
-constexpr std::size_t most_evaluations_each = 4;  // and so many more for each element
+constexpr std::size_t most_evaluations_each = 12;  // and so many more for each element
 
 // So many clusters that follow each other are a block: large cells look at blocks.
 constexpr std::size_t block_size = 16;
@@ -45,6 +46,9 @@ constexpr double share_left_out = 0x1p-9;
 
 // Of up to so many elements, balls around each bound the solid along a normal.
 constexpr std::size_t most_balls = 512;
+
+// Halvings of the way from a point of the solid to the farthest that it may reach.
+constexpr int halvings = 8;
 
 // More than what a few roundings of lengths can cost, relative to the largest of them.
 constexpr double slack = 0x1p-44;
@@ -162,6 +166,10 @@ class Search {
         std::frexp(most, &exponent);
         root_half_ = std::ldexp(1.0, exponent);
 
+        Box3 all = field_.skeletons;
+        all.include(box);
+        lost_ = 16 * slack * (length(all.hi - middle_) + length(all.lo - middle_));
+
         seen_.fill(-infinity<double>);
         balls_ = reach_of_balls();
         Cell whole;
@@ -172,13 +180,19 @@ class Search {
             make_blocks();
             for (std::uint32_t n = 0; n < blocks_.size(); ++n) whole.blocks.push_back(n);
         }
-        for (const double b : field_.strength) strongest_ = std::max(strongest_, std::abs(b));
+        for (const double b : field_.strength) {
+            strongest_ = std::max(strongest_, std::abs(b));
+            carved_ = carved_ || b < 0;
+        }
         for (const Ball& block : blocks_) {
             strongest_ = std::max({strongest_, block.above, block.below});
         }
         cells_.push_back(std::move(whole));
-        for (std::size_t side = 0; side < sides; ++side) queue_[side].push({0, 0});
-        cut(0);
+        for (std::size_t side = 0; side < sides; ++side) {
+            queue_[side].push({reach_of(cells_[0], side), 0});
+            if (!open_top(side)) return false;
+        }
+        for (std::size_t side = 0; side < sides; ++side) try_skeletons(side);
         return true;
     }
 
@@ -243,6 +257,56 @@ class Search {
         return reach;
     }
 
+    // Where cluster or element n reaches about farthest along a normal.
+    [[nodiscard]] Vec3d place(std::size_t n, const Vec3d& normal) const {
+        if (!field_.clusters.empty()) return cluster(static_cast<std::uint32_t>(n)).center - middle_;
+        const Vec3d a = field_.a(n) - middle_;
+        if (field_.shape[n] == Shape::segment) {
+            const Vec3d b = field_.b(n) - middle_;
+            return dot(b, normal) > dot(a, normal) ? b : a;
+        }
+        if (field_.shape[n] == Shape::circle) {
+            const Vec3d axis{field_.mx[n], field_.my[n], field_.mz[n]};
+            const Vec3d along = normal - dot(normal, axis) * axis;
+            return length(along) > 0 ? a + field_.radius[n] * unit(along) : a;
+        }
+        return a;
+    }
+
+    // Looks for a point of the solid that reaches far, from the skeletons that do on, so that less has to be searched.
+    void try_skeletons(std::size_t side) {
+        const Vec3d& normal = frustum_.normal[side];
+        const std::size_t count = field_.clusters.empty() ? field_.size() : field_.clusters.size();
+        std::vector<std::pair<double, std::size_t>> order(count);
+        for (std::size_t n = 0; n < count; ++n) order[n] = {dot(place(n, normal), normal), n};
+        std::sort(order.begin(), order.end(), std::greater<>());
+        for (std::size_t rank = 0; rank < count; rank = 2 * rank + (rank == 0 ? 1 : 0)) {
+            const Vec3d start = place(order[rank].second, normal);
+            if (!is_inside(start)) continue;
+            double inside = 0, beyond = (reach_[side] - dot(start, normal)) / dot(normal, normal);
+            for (int step = 0; step < halvings; ++step) {
+                const double middle = 0.5 * (inside + beyond);
+                (is_inside(start + middle * normal) ? inside : beyond) = middle;
+            }
+            note_inside(start + inside * normal);
+            return;
+        }
+    }
+
+    // f > 0 there, about. Before the first cell is cut.
+    [[nodiscard]] bool is_inside(const Vec3d& place) {
+        Cell point;
+        point.center = place;
+        look(cells_[0], point);
+        return point.value > 0;
+    }
+
+    void note_inside(const Vec3d& place) {
+        for (std::size_t side = 0; side < sides; ++side) {
+            seen_[side] = std::max(seen_[side], dot(frustum_.normal[side], place));
+        }
+    }
+
     // Puts the farthest cell that has not been cut on top of the side's queue. False: there is none.
     bool open_top(std::size_t side) {
         Queue& queue = queue_[side];
@@ -303,10 +367,7 @@ class Search {
                     cells_[parent].center[k] + ((n >> k & 1) != 0 ? child.half : -child.half);
             }
             look(cells_[parent], child);
-            if (child.outside || !(child.value > 0)) continue;
-            for (std::size_t side = 0; side < sides; ++side) {
-                seen_[side] = std::max(seen_[side], dot(frustum_.normal[side], child.center));
-            }
+            if (!child.outside && child.value > 0) note_inside(child.center);
         }
         cells_[parent].elements = cells_[parent].clusters = cells_[parent].blocks = {};
     }
@@ -325,6 +386,7 @@ class Search {
                         parent.elements.size() +
                         cluster_size * (parent.clusters.size() + block_size * parent.blocks.size()));
         sum.far = far_beyond(sum.least);
+        sum.rough = !parent.blocks.empty() && cell.half > 0;
         cell.left_out = parent.left_out;
         for (const std::uint32_t n : parent.blocks) add_block(n, cell, sum);
         for (const std::uint32_t n : parent.clusters) add_cluster(n, cell, sum);
@@ -352,8 +414,16 @@ class Search {
         double value = 0;      // of the F_i at the centre
         double least = 0;      // what counts as nothing
         double far = 0;        // and from which s on a Blinn kernel does
+        bool rough = false;    // the cell is so large that the field at its centre tells little
         std::size_t count = 0;
     };
+
+    // Where nothing carves, the rest can neither lower the bound below T nor f at the centre: it is
+    // only listed.
+    [[nodiscard]] bool is_settled(const Sum& sum) const {
+        return !carved_ && sum.above >= field_.threshold &&
+               (sum.value > field_.threshold || sum.rough);
+    }
 
     // The members of a ball that is no larger than the cell stand together; those of a larger one
     // each for itself.
@@ -388,15 +458,14 @@ class Search {
     // The members add up to no more than above k(s) where s is the least in the cell.
     [[nodiscard]] Added add_ball(const Ball& ball, Cell& cell, Sum& sum) const {
         const Vec3d from = ball.center - middle_;
-        double nearest = 0, at_center = 0, size = ball.radius;
+        double nearest = 0, at_center = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const double off = std::abs(from[k] - cell.center[k]);
             const double beyond = std::max(off - cell.half, 0.0);
             nearest += beyond * beyond;
             at_center += off * off;
-            size += std::abs(from[k]) + std::abs(cell.center[k]);
         }
-        const double distance = std::sqrt(nearest) - ball.radius - slack * size;
+        const double distance = std::sqrt(nearest) * (1 - slack) - ball.radius - lost_;
         const double s =
             distance > 0 ? distance * distance * ball.inverse_square * (1 - slack) : 0;
         const bool is_blinn = ball.kernel == KernelKind::blinn;
@@ -406,6 +475,7 @@ class Search {
             return Added::nothing;
         }
         if (ball.radius > cell.half) return Added::none_yet;
+        if (is_settled(sum)) return Added::together;
         const double most =
             ball.above * (s > 0 ? kernel_at(ball.kernel, s).hi : 1) * (1 + slack);
         sum.above += most;
@@ -418,40 +488,38 @@ class Search {
     }
 
     void add_element(std::uint32_t i, Cell& cell, Sum& sum) const {
-        const double b = field_.strength[i], width = field_.width[i];
+        // q changes by no more than |p - p'| / w from p to p'; of a point more is known.
+        constexpr double half_diagonal = 1.7320508075688774;  // of a cube, rounded up
+        const double b = field_.strength[i], per_width = field_.inverse_width[i];
         const Vec3d from = (middle_ - field_.a(i)) + cell.center;
-        double nearest = 0, farthest = 0, q = 0;
+        double nearest = 0, farthest = 0, s = 0;
         if (field_.shape[i] == Shape::point) {
-            double s = 0;
             for (std::size_t k = 0; k < 3; ++k) {
-                const double off = std::abs(from[k]) / width, half = cell.half / width;
-                const double beyond = std::max(off - half, 0.0);
+                const double off = std::abs(from[k]);
+                const double beyond = std::max(off - cell.half, 0.0);
                 nearest += beyond * beyond;
-                farthest += (off + half) * (off + half);
                 s += off * off;
             }
-            q = std::sqrt(s);
-            nearest = std::sqrt(nearest);
-            farthest = std::sqrt(farthest);
+            const double least = std::sqrt(nearest) - lost_;
+            nearest = least > 0 ? least * per_width * (1 - slack) : 0;
+            s *= per_width * per_width;
+            if (b < 0) farthest = std::sqrt(s);
         } else {
-            // q changes by no more than |p - p'| / w from p to p'.
-            constexpr double half_diagonal = 1.7320508075688774;  // of a cube, rounded up
-            q = distance_in_widths(field_, i, from);
-            nearest = q - half_diagonal * cell.half / width;
-            farthest = q + half_diagonal * cell.half / width;
+            const double q = distance_in_widths(field_, i, from);
+            const double least = q - (half_diagonal * cell.half + lost_) * per_width * (1 + slack);
+            nearest = least > 0 ? least : 0;
+            farthest = q;
+            s = q * q;
         }
-        const double lost = slack *
-                            (2 * std::abs(cell.center.x) + 2 * std::abs(cell.center.y) +
-                             2 * std::abs(cell.center.z) + 4 * length_of(from) +
-                             4 * std::max(field_.length[i], field_.radius[i])) /
-                            width;
-        nearest = nearest - lost > 0 ? nearest - lost : 0;
-        farthest = (farthest + lost) * (1 + slack);
         const double near_s = nearest * nearest * (1 - slack);
         ++sum.count;
         const bool is_blinn = field_.kernel[i] == KernelKind::blinn;
         if (near_s >= (is_blinn ? sum.far : 1)) {
             if (is_blinn) cell.left_out += sum.least;
+            return;
+        }
+        if (is_settled(sum)) {
+            cell.elements.push_back(i);
             return;
         }
         const double largest = near_s > 0 ? kernel_at(field_.kernel[i], near_s).hi : 1;
@@ -460,6 +528,8 @@ class Search {
             return;
         }
         cell.elements.push_back(i);
+        farthest =
+            (farthest + (half_diagonal * cell.half + lost_) * per_width) * (1 + 4 * slack);
         // What is not a number is out of the range of doubles: 0 is a bound of what carves.
         const double far_s = farthest * farthest * (1 + slack);
         const double bound = b > 0 ? b * largest
@@ -468,11 +538,7 @@ class Search {
                                  : 0;
         sum.above += bound;
         sum.magnitude += std::abs(bound);
-        sum.value += b * midpoint(kernel_at(field_.kernel[i], q * q));
-    }
-
-    static double length_of(const Vec3d& v) {
-        return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+        sum.value += b * midpoint(kernel_at(field_.kernel[i], s));
     }
 
     // What reaches farthest first.
@@ -483,6 +549,8 @@ class Search {
     Vec3d middle_;
     Box3 box_;  // relative to the middle, as all else
     double radius_ = 0, root_half_ = 0;
+    double lost_ = 0;       // what roundings cost a distance, at most
+    bool carved_ = false;   // some strength is negative
     double strongest_ = 0;  // the greatest |b|, of elements, and of blocks all together
     std::vector<Cell> cells_;
     std::vector<Ball> blocks_;
