@@ -37,6 +37,9 @@ constexpr std::size_t most_cells = 8192;
 constexpr std::size_t most_evaluations = std::size_t{1} << 16;
 constexpr std::size_t most_evaluations_each = 12;  // and so many more for each element
 
+// Elements are bounded together in cells whose half is no less than this part of their ball.
+constexpr double most_of_half = 2;
+
 // So many clusters that follow each other are a block: large cells look at blocks.
 constexpr std::size_t block_size = 16;
 
@@ -342,13 +345,16 @@ class Search {
     }
 
     // The one that is known worst, compared with its tolerance; `sides` where all are good enough.
+    // Large cells come first: where no point of the solid is known that reaches far, cutting small
+    // ones would take all the work.
     [[nodiscard]] std::size_t worst_side() const {
         std::size_t worst = sides;
-        double most = 1;
+        double most = 0;
         for (std::size_t side = 0; side < sides; ++side) {
-            const double gap = (reach_[side] - seen_[side]) / tolerance(side);
-            if (gap > most) {
-                most = gap;
+            const double gap = reach_[side] - seen_[side], enough = tolerance(side);
+            const double half = cells_[queue_[side].top().second].half;
+            if (gap > enough && std::min(gap, half) / enough > most) {
+                most = std::min(gap, half) / enough;
                 worst = side;
             }
         }
@@ -474,13 +480,17 @@ class Search {
             if (is_blinn) cell.left_out += sum.least;
             return Added::nothing;
         }
-        if (ball.radius > cell.half) return Added::none_yet;
+        // So small a ball is about a point: good enough for the value at a point.
+        const bool is_point = 2 * ball.radius * ball.radius * ball.inverse_square < 1;
+        if (cell.half > 0 ? ball.radius > most_of_half * cell.half : !is_point) {
+            return Added::none_yet;
+        }
         if (is_settled(sum)) return Added::together;
         const double most =
             ball.above * (s > 0 ? kernel_at(ball.kernel, s).hi : 1) * (1 + slack);
         sum.above += most;
         sum.magnitude += most;
-        if (2 * ball.radius * ball.radius * ball.inverse_square < 1) {
+        if (is_point) {
             sum.value += (ball.above - ball.below) *
                          midpoint(kernel_at(ball.kernel, at_center * ball.inverse_square));
         }
