@@ -37,18 +37,18 @@ void draw_text(const ViewerState& state, const std::string& strong, const std::s
 // the question was seen are no answer to it.
 std::optional<std::size_t> draw_answers(ViewerState& state, std::span<const Answer> answers,
                                         std::size_t first) {
-    const auto pressed = [](ImGuiKey key, bool repeats = false) {
-        return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeats);
+    const auto pressed = [](ImGuiKey key) {
+        return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), true);
     };
     std::optional<std::size_t>& chosen = state.panels.answer;
     std::optional<std::size_t> given;
     if (chosen) {
-        if (pressed(ImGuiKey_RightArrow, true) || pressed(ImGuiKey_Tab, true))
+        if (pressed(ImGuiKey_RightArrow) || pressed(ImGuiKey_Tab))
             chosen = (*chosen + 1) % answers.size();
-        if (pressed(ImGuiKey_LeftArrow, true))
+        if (pressed(ImGuiKey_LeftArrow))
             chosen = (*chosen + answers.size() - 1) % answers.size();
-        if (pressed(ImGuiKey_Enter)) given = chosen;
-        if (pressed(ImGuiKey_Escape)) given = answers.size() - 1;
+        if (plain_key_pressed(ImGuiKey_Enter)) given = chosen;
+        if (plain_key_pressed(ImGuiKey_Escape)) given = answers.size() - 1;
     } else {
         chosen = first;
     }

@@ -27,8 +27,9 @@ constexpr double drag_slack = 3;       // pixels at scale 1 before a press is a 
 constexpr double fine = 0.1;           // of the way, with Shift
 constexpr float tooltip_delay = 0.5f;  // seconds
 constexpr double label_width = 84;     // pixels at scale 1
+constexpr std::size_t most_shown = 400;  // characters of a text in its tooltip
 
-bool escape_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false); }
+bool escape_pressed() { return plain_key_pressed(ImGuiKey_Escape); }
 
 bool item_is_disabled() { return (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0; }
 
@@ -38,6 +39,39 @@ int grow(ImGuiInputTextCallbackData* data) {
     text.resize(static_cast<std::size_t>(data->BufTextLen));
     data->Buf = text.data();
     return 0;
+}
+
+struct Character {
+    char32_t code = 0;
+    std::size_t length = 1;  // bytes
+};
+
+// That begins at `at` of well-formed UTF-8; anything else is read byte by byte.
+Character character_at(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t i) {
+        return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
+    };
+    const unsigned first = byte(0);
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC0 ? 2 : 1;
+    if (length == 1) return {first, 1};
+    char32_t code = first & (0x7Fu >> length);
+    for (std::size_t i = 1; i < length; ++i) code = (code << 6) | (byte(i) & 0x3Fu);
+    return {code, std::min(length, text.size() - at)};
+}
+
+void append_utf8(std::string& text, char32_t code) {
+    const auto add = [&](char32_t byte) { text += static_cast<char>(byte); };
+    if (code < 0x800) {
+        add(0xC0 | (code >> 6));
+    } else if (code < 0x10000) {
+        add(0xE0 | (code >> 12));
+        add(0x80 | ((code >> 6) & 0x3F));
+    } else {
+        add(0xF0 | (code >> 18));
+        add(0x80 | ((code >> 12) & 0x3F));
+        add(0x80 | ((code >> 6) & 0x3F));
+    }
+    add(0x80 | (code & 0x3F));
 }
 
 bool input_text(const char* name, const char* hint, std::string& text, ImGuiInputTextFlags flags) {
@@ -66,6 +100,37 @@ double linear_of(float srgb) {
     return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
+// "#FCDAB3", in sRGB.
+std::string hex_of(const Color& linear) {
+    const auto byte = [](double x) {
+        return static_cast<unsigned>(std::lround(255 * static_cast<double>(srgb_of(x))));
+    };
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "#%02X%02X%02X", byte(linear.x) & 255u,
+                  byte(linear.y) & 255u, byte(linear.z) & 255u);
+    return text.data();
+}
+
+// Three or six hexadecimal digits, with or without '#'.
+std::optional<Color> parse_hex(std::string_view text) {
+    const auto trimmed = [](char c) { return c == ' ' || c == '\t'; };
+    while (!text.empty() && trimmed(text.front())) text.remove_prefix(1);
+    while (!text.empty() && trimmed(text.back())) text.remove_suffix(1);
+    if (text.starts_with('#')) text.remove_prefix(1);
+    if (text.size() != 3 && text.size() != 6) return std::nullopt;
+    const std::size_t digits = text.size() / 3;
+    Color color;
+    for (std::size_t part = 0; part < 3; ++part) {
+        unsigned number = 0;
+        const char* const begin = text.data() + part * digits;
+        const auto [rest, error] = std::from_chars(begin, begin + digits, number, 16);
+        if (error != std::errc() || rest != begin + digits) return std::nullopt;
+        if (digits == 1) number *= 17;
+        color[part] = linear_of(static_cast<float>(number) / 255);
+    }
+    return color;
+}
+
 // Faults of what a drag in a panel can change; the whole scene would be too much for every frame.
 bool has_fault(const Scene& scene, std::optional<std::size_t> selected) {
     if (!(scene.threshold > 0 && std::isfinite(scene.threshold))) return true;
@@ -90,6 +155,7 @@ void take_typed(ViewerState& state, const NumberField& field,
                         " stays");
         return;
     }
+    if (*value == field.value) return;  // in other words
     edit_scene(state, field.what, [&](Scene& scene) { set(scene, *value); });
 }
 
@@ -104,7 +170,7 @@ void typed_number(ViewerState& state, const NumberField& field, float width,
     state.widgets.add(field.id, WidgetKind::number);
     const bool active = ImGui::IsItemActive();
     ++typed.frames;
-    if (active && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Tab), false)) {
+    if (active && plain_key_pressed(ImGuiKey_Tab)) {
         take_typed(state, field, set);
         state.panels.type_next = true;
     } else if (ImGui::IsItemDeactivated() || (!active && typed.frames > 3)) {
@@ -129,7 +195,7 @@ void dragged_number(ViewerState& state, const NumberField& field, float width,
         const auto slack = static_cast<float>(drag_slack * state.scale);
         if (!drag.begun && ImGui::IsMouseDragging(ImGuiMouseButton_Left, slack)) {
             begin_field_drag(state, field.id, field.what);
-            drag.begun = true;
+            drag.start = field.value;  // an undo since the press has changed it
         }
         if (drag.begun && io.MousePos.x != drag.last_x) {
             drag.way += (io.KeyShift ? fine : 1) * static_cast<double>(io.MousePos.x - drag.last_x);
@@ -167,9 +233,16 @@ void dragged_number(ViewerState& state, const NumberField& field, float width,
     list.AddText({x, std::floor(0.5f * (lo.y + hi.y - extent.y))}, packed(colors.text, alpha),
                  text.c_str());
     list.PopClipRect();
+    if (const std::string whole = number_text(field.value); whole != text) tooltip(whole.c_str());
 }
 
 }  // namespace
+
+bool plain_key_pressed(int imgui_key) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return !io.KeyCtrl && !io.KeyShift && !io.KeyAlt && !io.KeySuper &&
+           ImGui::IsKeyPressed(ImGui::GetKeyIndex(static_cast<ImGuiKey>(imgui_key)), false);
+}
 
 std::optional<double> parse_number(const std::string& typed, double value) {
     std::string text = typed;
@@ -297,10 +370,20 @@ void vector_fields(ViewerState& state, const std::string& id, const std::string&
                    const std::function<void(Scene&, const Vec3d&)>& set) {
     const float spacing = px(state, 4);
     const float third = std::floor((field_width() - 2 * spacing) / 3);
+    // far from the origin a third of the line has no room for what a drag changes
+    bool one_line = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double seen =
+            tidy(value[static_cast<std::size_t>(axis)], exponent_above(step * 0.999));
+        const float text = ImGui::CalcTextSize(number_text(seen).c_str()).x;
+        one_line = one_line && (text <= third - px(state, 17) || std::abs(seen) < 1e4);
+    }
     for (int axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::size_t>(axis);
-        if (axis > 0) ImGui::SameLine(0, spacing);
-        const float width = axis < 2 ? third : field_width();  // the last takes what rounding left
+        if (axis > 0 && one_line) ImGui::SameLine(0, spacing);
+        if (axis > 0 && !one_line) label(state, "");
+        // the last takes what rounding left
+        const float width = axis < 2 && one_line ? third : field_width();
         const NumberField field{
             .id = id + "." + "xyz"[k], .what = what, .value = value[k], .step = step, .axis = axis};
         number_field(state, field, width, [&](Scene& scene, double number) {
@@ -310,6 +393,27 @@ void vector_fields(ViewerState& state, const std::string& id, const std::string&
         });
     }
 }
+
+namespace {
+
+// An unchanged text changes no colour, however little of it the text tells.
+void hex_field(ViewerState& state, const std::string& id, const std::string& what,
+                      const Color& value, float width,
+                      const std::function<void(Scene&, const Color&)>& set) {
+    const std::string before = hex_of(value);
+    std::string text = before;
+    if (!text_field(state, id, text, width)) return;
+    const auto chosen = parse_hex(text);
+    if (!chosen) {
+        state.say_error(in_quotes(text) + " is not a colour; write it as in #3366CC; " + before +
+                        " stays");
+        return;
+    }
+    if (hex_of(*chosen) == before) return;
+    edit_scene(state, what, [&](Scene& scene) { set(scene, *chosen); });
+}
+
+}  // namespace
 
 void color_field(ViewerState& state, const std::string& id, const std::string& what,
                  const Color& value, float width,
@@ -334,7 +438,7 @@ void color_field(ViewerState& state, const std::string& id, const std::string& w
         const bool changed =
             ImGui::ColorPicker3("##picker", srgb.data(),
                                 ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoLabel |
-                                    ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_DisplayHex |
+                                    ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_NoInputs |
                                     ImGuiColorEditFlags_PickerHueBar);
         if (ImGui::IsItemActivated()) begin_field_drag(state, id, what);
         if (changed) {
@@ -343,11 +447,17 @@ void color_field(ViewerState& state, const std::string& id, const std::string& w
         }
         if (ImGui::IsItemDeactivated()) end_field_drag(state);
 
-        ImGui::PushStyleColor(ImGuiCol_Text, colors.quiet);
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextUnformatted("linear");
-        ImGui::PopStyleColor();
         const float spacing = px(state, 4), left = px(state, 52);
+        const auto row = [&](const char* name) {
+            ImGui::PushStyleColor(ImGuiCol_Text, colors.quiet);
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextUnformatted(name);
+            ImGui::PopStyleColor();
+        };
+        row("sRGB");
+        ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + left);
+        hex_field(state, id + ".hex", what, value, picker_width - left, set);
+        row("linear");
         const float number_width = std::floor((picker_width - left - 2 * spacing) / 3);
         for (int part = 0; part < 3; ++part) {
             const auto k = static_cast<std::size_t>(part);
@@ -382,19 +492,82 @@ bool text_field(ViewerState& state, const std::string& id, std::string& text, fl
     ImGui::PushID(id.c_str());
     if (focus) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(width);
-    std::string shown = typed.id == id ? typed.text : text;
-    input_text("##text", hint, shown, focus ? ImGuiInputTextFlags_AutoSelectAll : 0);
+    const std::string before = shown_text(state, text);
+    std::string shown = typed.id == id ? typed.text : before;
+    input_text("##text", hint, shown, ImGuiInputTextFlags_AutoSelectAll);
     state.widgets.add(id, WidgetKind::text);
+    const float inside = width - 2 * ImGui::GetStyle().FramePadding.x;
+    if (!ImGui::IsItemActive() && ImGui::CalcTextSize(shown.c_str()).x > inside)
+        tooltip(printable(shown, most_shown).c_str());
     bool entered = false;
     if (ImGui::IsItemActive()) {
         typed = {id, shown};
     } else if (typed.id == id) {
-        entered = ImGui::IsItemDeactivated() && shown != text;
-        if (entered) text = shown;
+        entered = ImGui::IsItemDeactivated() && shown != before;
+        if (entered) text = meant_text(shown);
         typed = {};
     }
     ImGui::PopID();
     return entered;
+}
+
+std::string shown_text(const ViewerState& state, const std::string& text) {
+    std::string shown;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto [character, length] = character_at(text, at);
+        if (character < 0x80 || state.fonts.have(character)) {
+            shown.append(text, at, length);
+        } else {
+            std::array<char, 16> escaped{};
+            std::snprintf(escaped.data(), escaped.size(), "\\u{%04X}",
+                          static_cast<unsigned>(character));
+            shown += escaped.data();
+        }
+        at += length;
+    }
+    return shown;
+}
+
+std::string meant_text(const std::string& shown) {
+    constexpr std::string_view opening = "\\u{";
+    std::string text;
+    for (std::size_t at = 0; at < shown.size();) {
+        const std::size_t end = shown.find('}', at);
+        unsigned number = 0;
+        if (shown.compare(at, opening.size(), opening) == 0 && end != std::string::npos) {
+            const char* const begin = shown.data() + at + opening.size();
+            const auto [rest, error] = std::from_chars(begin, shown.data() + end, number, 16);
+            const bool surrogate = number >= 0xD800 && number < 0xE000;
+            if (error == std::errc() && rest == shown.data() + end && number >= 0x80 &&
+                number <= 0x10FFFF && !surrogate) {
+                append_utf8(text, number);
+                at = end + 1;
+                continue;
+            }
+        }
+        text += shown[at++];
+    }
+    return text;
+}
+
+void want_glyphs(ViewerState& state, const std::string& text) {
+    constexpr std::size_t most_glyphs = 3'000;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto [character, length] = character_at(text, at);
+        if (character >= 0x80 && character <= 0xFFFF && state.glyphs.size() < most_glyphs)
+            state.glyphs.insert(static_cast<char16_t>(character));
+        at += length;
+    }
+}
+
+std::string fitted_text(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    const std::string ellipsis = "\xE2\x80\xA6";
+    const float room = width - ImGui::CalcTextSize(ellipsis.c_str()).x;
+    const char* end = text.c_str();
+    ImGui::GetFont()->CalcTextSizeA(ImGui::GetFontSize(), std::max(room, 0.0f), 0, text.c_str(),
+                                    text.c_str() + text.size(), &end);
+    return std::string(text.c_str(), end) + ellipsis;
 }
 
 bool toggle(ViewerState& state, const std::string& id, const char* text, bool on) {
@@ -507,12 +680,27 @@ void label(const ViewerState& state, const char* text) {
 
 float field_width() { return std::max(1.0f, std::floor(ImGui::GetContentRegionAvail().x)); }
 
+std::optional<std::size_t> place_of(ViewerState& state, const std::string& name) {
+    const std::vector<std::string>& names = names_of(state);
+    auto& places = state.panels.places;
+    if (places.empty())
+        for (std::size_t i = 0; i < names.size(); ++i) places.emplace(names[i], i);
+    const auto found = places.find(name);
+    if (found == places.end()) return std::nullopt;
+    return found->second;
+}
+
 const std::vector<std::string>& names_of(ViewerState& state) {
     PanelMemory& memory = state.panels;
-    if (memory.named != state.document.scene_value()) {
-        memory.named = state.document.scene_value();
-        memory.names = element_names(*memory.named);
-    }
+    if (memory.named == state.document.scene_value()) return memory.names;
+    // a drag renames nothing; when it has ended, the scene is looked at once
+    const bool same = memory.named && state.document.dragging() &&
+                      memory.names.size() == state.document.scene().elements.size();
+    if (same) return memory.names;
+    memory.named = state.document.scene_value();
+    memory.names = element_names(*memory.named);
+    memory.places.clear();
+    for (const std::string& name : memory.names) want_glyphs(state, name);
     return memory.names;
 }
 

@@ -35,12 +35,14 @@ void vector_fields(ViewerState& state, const std::string& id, const std::string&
                    const Vec3d& value, double step,
                    const std::function<void(Scene&, const Vec3d&)>& set);
 
-// A swatch; a click opens a picker of sRGB and the linear numbers ID.r, ID.g and ID.b.
+// A swatch; a click opens a picker of sRGB, its digits ID.hex and the linear numbers ID.r, ID.g and
+// ID.b.
 void color_field(ViewerState& state, const std::string& id, const std::string& what,
                  const Color& value, float width,
                  const std::function<void(Scene&, const Color&)>& set);
 
-// True once, when a new text has been entered; `text` holds it. `hint` stands in an empty field.
+// True once, when a new text has been entered; `text` holds it. A click selects what stands there.
+// `hint` stands in an empty field.
 bool text_field(ViewerState& state, const std::string& id, std::string& text, float width,
                 const char* hint = "", bool focus = false);
 
@@ -52,6 +54,15 @@ bool icon_button(ViewerState& state, const std::string& id, Icon icon, const cha
                  bool enabled = true, bool on = false);
 bool text_button(ViewerState& state, const std::string& id, const char* label, float width = 0,
                  bool enabled = true, bool strong = false);
+
+// `text` with every character that no font draws as \u{539F}, and what such a text stands for.
+[[nodiscard]] std::string shown_text(const ViewerState& state, const std::string& text);
+[[nodiscard]] std::string meant_text(const std::string& shown);
+// Fonts that have its characters are wanted from the next frame on.
+void want_glyphs(ViewerState& state, const std::string& text);
+
+// `text`, or as much of it as has room beside an ellipsis.
+[[nodiscard]] std::string fitted_text(const std::string& text, float width);
 
 // The last item's, shown when the pointer rests on it.
 void tooltip(const char* text);
@@ -82,6 +93,9 @@ void edit_scene(ViewerState& state, const std::string& what,
 // What was typed, as a double; nothing where it is no finite number. `value` is what stands now.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text, double value);
 
+// One of ImGui's keys (ImGuiKey_Enter) went down in this frame, and no modifier is held with it.
+[[nodiscard]] bool plain_key_pressed(int imgui_key);
+
 // A drag of a control begins, goes on or is left: shared by fields that are not numbers.
 void begin_field_drag(ViewerState& state, const std::string& id, const std::string& what);
 void drag_field(ViewerState& state, const std::function<void(Scene&)>& change);
@@ -92,5 +106,7 @@ void end_lost_edits(ViewerState& state);
 
 // element_names of the document's scene, kept from frame to frame.
 [[nodiscard]] const std::vector<std::string>& names_of(ViewerState& state);
+// The element that has that name, by its place in the list.
+[[nodiscard]] std::optional<std::size_t> place_of(ViewerState& state, const std::string& name);
 
 }  // namespace ivory

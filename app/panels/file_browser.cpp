@@ -178,7 +178,7 @@ void draw_contents(ViewerState& state) {
     // Keys that were pressed before the browser was seen, or that answer a question, are not its
     // own.
     const bool has_keys = !browser.just_opened && !state.panels.file_question;
-    const bool enter = has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+    const bool enter = has_keys && plain_key_pressed(ImGuiKey_Enter);
     done |= enter && was_typed != "browser.path" &&
             !(was_typed == "browser.name" && browser.name_clicked);
     if (enter) browser.name_clicked = false;
@@ -200,7 +200,7 @@ void draw_contents(ViewerState& state) {
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - spacing);
     const bool cancel =
         text_button(state, "browser.cancel", "Cancel", button) ||
-        (has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) &&
+        (has_keys && plain_key_pressed(ImGuiKey_Escape) &&
          state.panels.text.id.empty());
     ImGui::SameLine();
     done |= text_button(state, "browser.ok",

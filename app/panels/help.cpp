@@ -127,6 +127,9 @@ void draw_help(ViewerState& state) {
     const auto width = static_cast<float>(state.window.width),
                height = static_cast<float>(state.window.height);
     const float pad = px(state, 28);
+    // one below the other where they have no room beside each other
+    const bool two_columns = px(state, 2 * column_width + gap) + 2 * pad <= 0.98f * width;
+    const float columns = px(state, two_columns ? 2 * column_width + gap : column_width);
     ImGui::SetNextWindowPos({std::floor(0.5f * width), std::floor(0.5f * height)}, ImGuiCond_Always,
                             {0.5f, 0.5f});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {0.98f * width, 0.98f * height});
@@ -138,19 +141,19 @@ void draw_help(ViewerState& state) {
     ImGui::Begin("help", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_HorizontalScrollbar);
+                     ImGuiWindowFlags_NoNavInputs);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
     ImGui::PushFont(state.fonts.strong);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Mouse and keys");
     ImGui::PopFont();
-    ImGui::SameLine(pad + px(state, 2 * column_width + gap) - ImGui::GetFrameHeight());
+    ImGui::SameLine(pad + columns - ImGui::GetFrameHeight());
     if (icon_button(state, "help.close", Icon::cross, "Close   Esc")) state.help_shown = false;
     ImGui::Dummy({0, px(state, 6)});
     const float top = ImGui::GetCursorPosY();
     for (const Group& group : left_groups) draw_group(state, group);
-    ImGui::SetCursorPos({pad + px(state, column_width + gap), top});
+    if (two_columns) ImGui::SetCursorPos({pad + px(state, column_width + gap), top});
     ImGui::BeginGroup();
     for (const Group& group : right_groups) draw_group(state, group);
     ImGui::EndGroup();

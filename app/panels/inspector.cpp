@@ -50,7 +50,7 @@ void draw_skeleton(ViewerState& state, std::size_t element, const std::string& n
         skeleton_vector(state, "b", "End b", "Move end b of " + name, element, &SegmentSkeleton::b,
                         step);
     } else if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
-        skeleton_vector(state, "center", "Center", "Move " + name, element, &CircleSkeleton::center,
+        skeleton_vector(state, "center", "Centre", "Move " + name, element, &CircleSkeleton::center,
                         step);
         skeleton_vector(state, "normal", "Normal", "Tilt " + name, element, &CircleSkeleton::normal,
                         0.01);
@@ -129,10 +129,10 @@ void draw_element(ViewerState& state, std::size_t element) {
                    [&](Scene& scene) { scene = with_name(std::move(scene), element, text); });
     ImGui::PopID();
 
-    label(state, "Color");
+    label(state, "Colour");
     const float toggle_width =
         ImGui::GetFrameHeight() + px(state, 6) + ImGui::CalcTextSize("Visible").x;
-    color_field(state, "element.color", "Change color of " + name, now.color,
+    color_field(state, "element.color", "Change colour of " + name, now.color,
                 field_width() - toggle_width - px(state, 12),
                 [=](Scene& scene, const Color& color) { scene.elements[element].color = color; });
     ImGui::SameLine(0, px(state, 12));

@@ -9,13 +9,15 @@ namespace ivory {
 
 namespace {
 
+constexpr Modifiers plain{};
+
 bool same(const Shortcut& shortcut, const KeyPress& press) {
     return shortcut.key != Key::none && shortcut.key == press.key &&
            shortcut.modifiers == press.modifiers;
 }
 
 void press(ViewerState& state, const KeyPress& press) {
-    if (press.key == Key::escape) {
+    if (press.key == Key::escape && press.modifiers == plain) {
         if (state.help_shown)
             state.help_shown = false;
         else if (state.message.error)
@@ -40,7 +42,7 @@ void press(ViewerState& state, const KeyPress& press) {
 
 void handle_keys(ViewerState& state, const Input& input) {
     // keys belong to a drag, a text field or a dialog first
-    if (state.document.dragging() || ImGui::GetIO().WantTextInput) return;
+    if (state.document.dragging() || ImGui::GetIO().WantTextInput || state.panels.number) return;
     if (state.panels.dialog_open()) return;
     // A menu or a colour picker has the plain keys, Escape among them: one can undo and save with it open.
     const bool popup =
@@ -48,6 +50,8 @@ void handle_keys(ViewerState& state, const Input& input) {
     for (const KeyPress& key : input.pressed)
         if (!popup || key.modifiers.control) press(state, key);
     if (popup) return;
+    const Modifiers& held = input.modifiers;  // Shift may be how '?' is typed
+    if (held.control || held.alt || held.super) return;
     if (input.text.find(U'?') != std::u32string::npos) run(state, Action::help);
 }
 

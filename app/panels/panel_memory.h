@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "app/document/file_stamp.h"
@@ -73,6 +75,10 @@ struct FileBrowser {
     std::optional<Pending> after;  // when it has been saved
 };
 
+struct ThresholdRange {
+    double least = 1e-3, most = 1;
+};
+
 struct PanelMemory {
     std::optional<TypedNumber> number;
     bool type_next = false;  // Tab: the next number field is to be typed into
@@ -96,7 +102,8 @@ struct PanelMemory {
     // Derived from a scene, kept until there is another one.
     std::shared_ptr<const Scene> named, ranged;
     std::vector<std::string> names;  // element_names of `named`
-    double most_threshold = 1;       // of `ranged`: the slider's right end
+    std::unordered_map<std::string_view, std::size_t> places;  // of `names`; empty: not asked for
+    ThresholdRange thresholds;       // of `ranged`: the slider's ends
 };
 
 }  // namespace ivory

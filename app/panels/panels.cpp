@@ -62,13 +62,6 @@ WindowRect at_least_one_pixel(WindowRect rect) {
     return rect;
 }
 
-void let_message_fade(ViewerState& state) {
-    Message& message = state.message;
-    if (message.error || message.text.empty()) return;
-    message.seconds_left -= static_cast<double>(ImGui::GetIO().DeltaTime);
-    if (message.seconds_left <= 0) message = {};
-}
-
 }  // namespace
 
 void begin_panel(const char* name, const WindowRect& rect, int more_flags) {
@@ -82,8 +75,14 @@ void begin_panel(const char* name, const WindowRect& rect, int more_flags) {
                      ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoNavFocus);
 }
 
+void age_message(ViewerState& state, double seconds) {
+    Message& message = state.message;
+    if (message.text.empty()) return;
+    message.seconds_left -= seconds;
+    if (message.seconds_left <= 0) message = {};
+}
+
 void draw_panels(ViewerState& state) {
-    let_message_fade(state);
     if (state.panels_hidden) {
         state.viewport = at_least_one_pixel({0, 0, state.window.width, state.window.height});
         draw_message(state);
@@ -107,7 +106,7 @@ double next_frame_wanted(const ViewerState& state) {
     const auto within = [&](double seconds) {
         wanted = wanted < 0 ? seconds : std::min(wanted, seconds);
     };
-    if (!state.message.text.empty() && !state.message.error)
+    if (!state.message.text.empty())
         within(std::max(state.message.seconds_left, rest));
     if (io.WantTextInput) within(caret);
     // a tooltip is about to come

@@ -16,6 +16,10 @@ void apply_theme(Theme theme, double scale);
 // every control in state.widgets. With panels_hidden the viewport is the whole window.
 void draw_panels(ViewerState& state);
 
+// So many seconds of real time have passed since the last frame: a message that has been read by now
+// goes, an error later than others. At the start of each frame.
+void age_message(ViewerState& state, double seconds);
+
 // The keys of the bindings table, for what no text field has taken. Before draw_panels.
 void handle_keys(ViewerState& state, const Input& input);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -113,10 +114,11 @@ void draw_row(ViewerState& state, std::size_t row, float width) {
     draw_icon(list, shape_icon(element.skeleton), {at.x + px(state, 34), middle}, px(state, 12),
               packed(colors.quiet, alpha));
     const float text_left = at.x + px(state, 48);
-    list.PushClipRect({text_left, at.y}, {at.x + width - height, at.y + height}, true);
+    const std::string whole_name = shown_text(state, printable(name, 200));
+    const std::string shown = fitted_text(whole_name, at.x + width - height - text_left);
     list.AddText({text_left, std::floor(middle - 0.5f * ImGui::GetFontSize())},
-                 packed(colors.text, alpha), printable(name, 200).c_str());
-    list.PopClipRect();
+                 packed(colors.text, alpha), shown.c_str());
+    if (shown != whole_name) tooltip(whole_name.c_str());
 
     ImGui::SameLine(0, 0);
     const bool eye_clicked = ImGui::InvisibleButton("##eye", {height, height});
@@ -132,15 +134,32 @@ void draw_row(ViewerState& state, std::size_t row, float width) {
     if (eye_clicked) set_visible(state, row, !element.visible);
 }
 
-// Rows out of sight are where they would be drawn.
-void record_row(ViewerState& state, std::size_t row, ImVec2 at, float width, float height) {
+// Rows out of sight are where they would be drawn: `first` is the place of the first one.
+Widgets::Search rows_out_of_sight(ViewerState& state, ImVec2 first, float width, float height) {
+    const ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 lo = list.GetClipRectMin(), hi = list.GetClipRectMax();
     const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
-    const std::string id = "row." + names_of(state)[row];
-    state.widgets.add(id, WidgetKind::row,
-                      {whole(at.x), whole(at.y), whole(width - height), whole(height)});
-    state.widgets.add(id + ".visible", WidgetKind::toggle,
-                      {whole(at.x + width - height), whole(at.y), whole(height), whole(height)},
-                      state.document.scene().elements[row].visible);
+    const WindowRect clip{whole(lo.x), whole(lo.y), whole(hi.x - lo.x), whole(hi.y - lo.y)};
+    return [=, &state](const std::string& id) -> std::optional<Widget> {
+        const std::string prefix = "row.", suffix = ".visible";
+        if (!id.starts_with(prefix)) return std::nullopt;
+        std::string name = id.substr(prefix.size());
+        auto row = place_of(state, name);
+        const bool eye = !row && name.ends_with(suffix);
+        if (eye) {
+            name.resize(name.size() - suffix.size());
+            row = place_of(state, name);
+        }
+        if (!row || *row >= state.document.scene().elements.size()) return std::nullopt;
+        const float y = first.y + static_cast<float>(*row) * height;
+        if (!eye)
+            return Widget{WidgetKind::row,
+                          {whole(first.x), whole(y), whole(width - height), whole(height)},
+                          clip, false, true};
+        return Widget{WidgetKind::toggle,
+                      {whole(first.x + width - height), whole(y), whole(height), whole(height)},
+                      clip, state.document.scene().elements[*row].visible, true};
+    };
 }
 
 void scroll_to_selected(ViewerState& state, float height) {
@@ -174,12 +193,7 @@ void draw_rows(ViewerState& state, float list_height) {
         for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row)
             if (static_cast<std::size_t>(row) < state.document.scene().elements.size())
                 draw_row(state, static_cast<std::size_t>(row), width);
-    // a click may have deleted one
-    const std::size_t left =
-        state.widgets.whole_lists ? std::min(count, state.document.scene().elements.size()) : 0;
-    for (std::size_t row = 0; row < left; ++row)
-        record_row(state, row, {start.x, start.y + static_cast<float>(row) * height}, width,
-                   height);
+    state.widgets.set_out_of_sight(rows_out_of_sight(state, start, width, height));
     ImGui::PopStyleVar();
     ImGui::EndChild();
 }

@@ -123,12 +123,11 @@ void draw_message_text(ViewerState& state) {
     const float right = ImGui::GetWindowWidth() - px(state, 8) - (state.message.error ? side : 0);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float left = ImGui::GetCursorPosX();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.PushClipRect(at, {ImGui::GetWindowPos().x + right - px(state, 6), at.y + 2 * side}, true);
-    list.AddText(at, packed(state.message.error ? colors.error_text : colors.text),
-                 state.message.text.c_str());
-    list.PopClipRect();
-    ImGui::Dummy({std::max(right - left - px(state, 6), 1.0f), ImGui::GetFontSize()});
+    const float room = std::max(right - left - px(state, 6), 1.0f);
+    ImGui::GetWindowDrawList()->AddText(
+        at, packed(state.message.error ? colors.error_text : colors.text),
+        fitted_text(state.message.text, room).c_str());
+    ImGui::Dummy({room, ImGui::GetFontSize()});
     tooltip(state.message.text.c_str());
     if (!state.message.error) return;
     ImGui::SameLine();
@@ -151,10 +150,11 @@ void draw_status_bar(ViewerState& state, const WindowRect& rect) {
                 ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
-    if (!state.message.text.empty()) {
+    const char* const what_else = hint(state);
+    if (state.message.error || (!state.message.text.empty() && what_else == nullptr)) {
         draw_message_text(state);
-    } else if (const char* const text = hint(state)) {
-        draw_hint(state, text);
+    } else if (what_else != nullptr) {
+        draw_hint(state, what_else);
     } else {
         draw_figures(state);
     }

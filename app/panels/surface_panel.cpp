@@ -1,10 +1,15 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
 #include <string>
-#include <variant>
+#include <unordered_map>
 #include <vector>
 
 #include "app/document/tidy.h"
@@ -19,85 +24,139 @@ namespace ivory {
 
 namespace {
 
-// About the field's greatest value: that on the skeletons, of many elements on some of them. Beyond
-// it there is no surface to see. Never more than a millisecond or two.
+// Places where much strength comes together: the skeletons of the fullest cells of a grid, about as
+// wide as an element.
+std::vector<std::size_t> fullest_places(const Field& field, std::size_t count) {
+    double width = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) width = std::max(width, field.width[i]);
+    struct Cell {
+        double strength = 0;
+        std::size_t first = 0;
+    };
+    std::unordered_map<std::uint64_t, Cell> cells;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        std::uint64_t key = 0;
+        const Vec3d place = field.a(i);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double step = std::clamp(std::floor(place[axis] / width), -9e15, 9e15);
+            key = (key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(step))) *
+                  0x9E3779B97F4A7C15u;
+            key ^= key >> 29;
+        }
+        Cell& cell = cells.try_emplace(key, Cell{0, i}).first->second;
+        cell.strength += std::max(0.0, field.strength[i]);
+    }
+    std::vector<Cell> order;
+    for (const auto& [key, cell] : cells) order.push_back(cell);
+    count = std::min(count, order.size());
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                      order.end(), [](const Cell& a, const Cell& b) {
+                          return a.strength != b.strength ? a.strength > b.strength
+                                                          : a.first < b.first;
+                      });
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < count; ++i) places.push_back(order[i].first);
+    return places;
+}
+
+// About the field's greatest value: that on the skeletons, of all of them or of those where it is
+// likely to be. Beyond it there is no surface to see.
 double greatest_field(const Scene& scene) {
-    constexpr std::size_t most_evaluations = 6'000, most_elements = 3'000;
+    constexpr std::size_t most_evaluations = 200'000, most_places = 64;
     double greatest = 0;
     for (const Element& element : scene.elements)
         if (element.visible) greatest = std::max(greatest, element.strength);
-    if (scene.elements.size() > most_elements) return 2 * greatest;
     const Field field = compile(scene);
-    const std::size_t places =
-        std::clamp<std::size_t>(most_evaluations / (field.size() + 1), 1, 64);
-    const std::size_t stride = field.size() / places + 1;
-    for (std::size_t i = 0; i < field.size(); i += stride) {
-        const bool long_one = field.shape[i] == Shape::segment;
-        const Vec3d place = long_one ? 0.5 * field.a(i) + 0.5 * field.b(i) : field.a(i);
+    const std::size_t count =
+        std::clamp<std::size_t>(most_evaluations / (field.size() + 1), 4, most_places);
+    const auto look_at = [&](const Vec3d& place) {
         greatest = std::max(greatest, sample(field, place).value + scene.threshold);
-        if (long_one)
-            greatest = std::max(greatest, sample(field, field.a(i)).value + scene.threshold);
+    };
+    for (const std::size_t i : fullest_places(field, count)) {
+        look_at(field.a(i));
+        if (field.shape[i] == Shape::segment) look_at(0.5 * field.a(i) + 0.5 * field.b(i));
     }
     return greatest;
 }
 
-// The slider's right end: a round number at or beyond the greatest value.
-double most_threshold(ViewerState& state) {
-    PanelMemory& memory = state.panels;
-    const Document& document = state.document;
-    if (memory.ranged == document.scene_value() || document.dragging())
-        return memory.most_threshold;
-    const bool same_elements =
-        memory.ranged && memory.ranged->elements == document.scene().elements;
-    const bool first = memory.ranged == nullptr;
-    memory.ranged = document.scene_value();
-    if (same_elements) return memory.most_threshold;
-    const double greatest = std::max(greatest_field(*memory.ranged), 1e-3);
-    // it stays where it is while it serves: a slider should not change under the hand
-    const bool serves =
-        greatest <= memory.most_threshold && greatest >= 0.3 * memory.most_threshold;
-    if (!first && serves) return memory.most_threshold;
-    const double power = std::pow(10.0, std::floor(std::log10(greatest)));
-    memory.most_threshold = 10 * power;
-    for (const double step : {5.0, 3.0, 2.0, 1.5, 1.2, 1.0})
-        if (step * power >= greatest) memory.most_threshold = step * power;
-    return memory.most_threshold;
+// A round number at or beyond `value`.
+double round_up(double value) {
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 1.2, 1.5, 2.0, 3.0, 5.0})
+        if (step * power >= value) return step * power;
+    return 10 * power;
 }
 
-// Thresholds along the slider: two decades of logarithm below 0.1, then linear.
+// The slider's ends: what the field takes in the scene, and the threshold that stands.
+ThresholdRange threshold_range(ViewerState& state) {
+    PanelMemory& memory = state.panels;
+    const Document& document = state.document;
+    // a slider does not change under the hand
+    if (memory.ranged == document.scene_value() || document.dragging()) return memory.thresholds;
+    const double threshold = document.scene().threshold;
+    const bool first = memory.ranged == nullptr;
+    const bool same_elements =
+        memory.ranged && memory.ranged->elements == document.scene().elements;
+    memory.ranged = document.scene_value();
+    ThresholdRange& range = memory.thresholds;
+    const auto holds_threshold = [&] {
+        return range.least <= threshold && threshold <= range.most;
+    };
+    if (same_elements && holds_threshold()) return range;
+    const double greatest = std::max(greatest_field(*memory.ranged), 1e-3);
+    const bool serves = greatest <= range.most && greatest >= 0.3 * range.most;
+    if (!first && serves && holds_threshold()) return range;
+    range.most = round_up(std::max(greatest, threshold));
+    range.least = std::min(greatest < 0.2 ? range.most / 1000 : 1e-3,
+                           std::pow(10.0, std::floor(std::log10(threshold))));
+    return range;
+}
+
+// Thresholds along the slider: two decades of logarithm below 0.1, then linear; logarithmic all the
+// way where that would be too coarse somewhere.
 //
 //   0.001      0.01       0.1                              most
 //   |-----------|-----------|--------------------------------|
 //   0          0.2         0.4                               1
 struct Scale {
-    static constexpr double knee = 0.1, knee_at = 0.4, decades = 2;
-    double most;
+    static constexpr double knee = 0.1, knee_at = 0.4;
+    double least, most;
 
-    // All of it is logarithmic where the linear part would be none.
-    [[nodiscard]] bool is_log() const { return most < 2 * knee; }
+    [[nodiscard]] bool is_log() const { return most < 2 * knee || most > 5 || least < 1e-3; }
     [[nodiscard]] double value(double share) const {
-        if (is_log()) return most * std::pow(10.0, 3 * (share - 1));
-        if (share < knee_at) return knee * std::pow(10.0, decades * (share / knee_at - 1));
+        if (is_log()) return std::pow(most, share) * std::pow(least, 1 - share);
+        if (share < knee_at) return least * std::pow(knee / least, share / knee_at);
         return knee + (most - knee) * (share - knee_at) / (1 - knee_at);
     }
     [[nodiscard]] double share(double value) const {
         double share = 0;
         if (is_log()) {
-            share = 1 + std::log10(value / most) / 3;
+            share = (std::log10(value) - std::log10(least)) / decades();
         } else if (value < knee) {
-            share = knee_at * (1 + std::log10(value / knee) / decades);
+            share = knee_at * std::log10(value / least) / std::log10(knee / least);
         } else {
             share = knee_at + (1 - knee_at) * (value - knee) / (most - knee);
         }
         return std::clamp(share, 0.0, 1.0);
     }
+    [[nodiscard]] double decades() const { return std::log10(most) - std::log10(least); }
 };
 
 void set_threshold(Scene& scene, double threshold) { scene.threshold = threshold; }
 
+// Two digits: ticks are round.
+std::string tick_text(double tick) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2g", tick);
+    const double round = std::strtod(text.data(), nullptr);
+    const bool plain = round >= 1e-4 && round < 1e5;
+    return plain ? number_text(round) : text.data();
+}
+
 void draw_slider(ViewerState& state) {
     const Palette& colors = palette(state.theme);
-    const Scale scale{most_threshold(state)};
+    const ThresholdRange range = threshold_range(state);
+    const Scale scale{range.least, range.most};
     const float width = field_width(), height = px(state, 24);
     ImGui::InvisibleButton("##threshold slider", {width, height});
     state.widgets.add("threshold.slider", WidgetKind::button);
@@ -106,11 +165,19 @@ void draw_slider(ViewerState& state) {
     const float knob = px(state, 7);
     const float left = lo.x + knob, room = std::max(hi.x - lo.x - 2 * knob, 1.0f);
 
-    if (ImGui::IsItemActivated()) begin_field_drag(state, "threshold.slider", "Change threshold");
-    if (active) {
-        const double share =
-            std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - left) / room), 0.0, 1.0);
-        const double value = scale.value(share);
+    const double mouse = static_cast<double>((ImGui::GetIO().MousePos.x - left) / room);
+    DraggedField& drag = state.panels.dragged;
+    if (ImGui::IsItemActivated()) {
+        begin_field_drag(state, "threshold.slider", "Change threshold");
+        // the knob is held where it was pressed, and moves with the pointer from there
+        const double knob_at = scale.share(state.document.scene().threshold);
+        const bool on_knob = std::abs(mouse - knob_at) * static_cast<double>(room) <= 1.3 * knob;
+        drag.way = on_knob ? knob_at - mouse : 0;
+        drag.start = on_knob ? mouse : std::numeric_limits<double>::quiet_NaN();
+    }
+    if (active && mouse != drag.start) {
+        drag.start = std::numeric_limits<double>::quiet_NaN();  // it has moved
+        const double value = scale.value(std::clamp(mouse + drag.way, 0.0, 1.0));
         // three digits
         const double round = tidy(value, static_cast<int>(std::floor(std::log10(value))) - 2);
         drag_field(state, [&](Scene& scene) { set_threshold(scene, round); });
@@ -125,18 +192,22 @@ void draw_slider(ViewerState& state) {
                        half);
     list.AddRectFilled({left, y - half}, {knob_x, y + half}, packed(colors.accent), half);
 
-    std::vector<double> ticks{scale.value(0)};
+    std::vector<double> ticks{range.least};
     if (scale.is_log()) {
-        for (double tick = scale.most / 100; tick < 1.5 * scale.most; tick *= 10)
-            ticks.push_back(tick);
+        // whole decades, a few of them
+        const double stride = std::max(1.0, std::ceil(scale.decades() / 4));
+        const double lowest = std::floor(std::log10(range.least)) + stride;
+        for (double power = lowest; power < std::log10(range.most) - 0.7 * stride; power += stride)
+            ticks.push_back(std::pow(10.0, power));
     } else {
-        ticks.insert(ticks.end(), {0.01, 0.1, scale.most});
+        ticks.insert(ticks.end(), {0.01, 0.1});
     }
+    ticks.push_back(range.most);
     for (const double tick : ticks) {
         const float x = std::floor(at(scale.share(tick)));
         list.AddLine({x, y + px(state, 7)}, {x, y + px(state, 10)}, packed(colors.quiet),
                      px(state, 1));
-        const std::string text = number_text(tidy(tick, -6));
+        const std::string text = tick_text(tick);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
         const float text_x = std::clamp(x - 0.5f * size.x, lo.x, hi.x - size.x);
         list.AddText({std::floor(text_x), y + px(state, 11)}, packed(colors.quiet), text.c_str());
@@ -186,7 +257,7 @@ bool draw_light(ViewerState& state, const Light& light, std::size_t i) {
     const float button = ImGui::GetFrameHeight(), spacing = px(state, 4);
     const float rest = field_width() - button - 2 * spacing;
     const float swatch = std::floor(0.4f * rest);
-    color_field(state, id + ".color", "Change color of " + name, light.color, swatch,
+    color_field(state, id + ".color", "Change colour of " + name, light.color, swatch,
                 [=](Scene& scene, const Color& color) { lights_of(scene)[i].color = color; });
     ImGui::SameLine(0, spacing);
     number_field(state,

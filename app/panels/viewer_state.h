@@ -1,8 +1,10 @@
 // All that the viewer knows and shows: what panels, overlay and bindings read and change.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "app/document/document.h"
@@ -20,7 +22,7 @@ namespace ivory {
 struct Message {
     std::string text;  // one line; empty: none
     bool error = false;
-    double seconds_left = 0;  // until it fades; errors stay until the next message
+    double seconds_left = 0;  // until it goes
 };
 
 // The view of the document: not part of it, saved with it.
@@ -31,12 +33,21 @@ struct DocumentView {
     bool automatic = true;
 };
 
+// A normal as a drag left it, and the length that its handle's arrow goes by: with its own the tip
+// would leap when it is let go.
+struct KeptArrow {
+    std::size_t element = 0;
+    Vec3d normal;
+    double length = 1;
+};
+
 struct ViewerState {
     Document document;
     DocumentView view;
     PictureState picture;  // read only, but for app/viewer
     Widgets widgets;
     Fonts fonts;
+    std::set<char16_t> glyphs;  // beyond ASCII, that names need; Viewer loads fonts for them
 
     // Layout of this frame, frame-buffer pixels; `viewport` is set by draw_panels.
     WindowSize window;
@@ -48,6 +59,7 @@ struct ViewerState {
     bool help_shown = false;     // ?
     bool skeleton_shown = true;  // the overlay as a whole
     Message message;
+    std::optional<KeptArrow> arrow;  // of the last normal that was dragged
     PanelMemory panels;
     Stop stop;  // asked while a file is read; empty where a signal ends the process by itself
 
@@ -59,7 +71,7 @@ struct ViewerState {
     [[nodiscard]] Scene scene_with_view() const;
     [[nodiscard]] Projection projection() const { return {view.camera, viewport.size()}; }
     void say(std::string text) { message = {std::move(text), false, 4}; }
-    void say_error(std::string text) { message = {std::move(text), true, 0}; }
+    void say_error(std::string text) { message = {std::move(text), true, 20}; }
 };
 
 }  // namespace ivory

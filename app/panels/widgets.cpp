@@ -38,7 +38,10 @@ void Widgets::add(const std::string& id, WidgetKind kind, const WindowRect& rect
 
 const Widget* Widgets::find(const std::string& id) const {
     const auto found = widgets_.find(id);
-    return found == widgets_.end() ? nullptr : &found->second;
+    if (found != widgets_.end()) return &found->second;
+    const auto widget = out_of_sight_ ? out_of_sight_(id) : std::nullopt;
+    if (!widget) return nullptr;
+    return &found_.insert_or_assign(id, *widget).first->second;
 }
 
 }  // namespace ivory

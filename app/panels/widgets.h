@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/platform/window_rect.h"
 
@@ -37,24 +39,30 @@ struct Widget {
 
 class Widgets {
   public:
-    // Rows of lists that are scrolled out of sight are recorded too: for scripts. A window, where nobody
-    // asks for them, does without.
-    bool whole_lists = true;
-
     // At the start of each frame.
-    void clear() { widgets_.clear(); }
+    void clear() {
+        widgets_.clear();
+        found_.clear();
+        out_of_sight_ = nullptr;
+    }
     // Directly after the ImGui item, whose rectangle it takes. Ids are unique in a frame: the first of
     // two with the same one stays.
     void add(const std::string& id, WidgetKind kind, bool on = false);
-    // The same for what is not an ImGui item, and for rows that a clipper leaves out; within the ImGui
-    // window that it belongs to.
+    // The same for what is not an ImGui item; within the ImGui window that it belongs to.
     void add(const std::string& id, WidgetKind kind, const WindowRect& rect, bool on = false);
+
+    // What is asked, until the frame's end and the next one's start, for widgets that were left out
+    // because they cannot be seen: rows of a list that is scrolled. They are not in `all`.
+    using Search = std::function<std::optional<Widget>(const std::string& id)>;
+    void set_out_of_sight(Search search) { out_of_sight_ = std::move(search); }
 
     [[nodiscard]] const Widget* find(const std::string& id) const;
     [[nodiscard]] const std::map<std::string, Widget>& all() const { return widgets_; }
 
   private:
     std::map<std::string, Widget> widgets_;
+    Search out_of_sight_;
+    mutable std::map<std::string, Widget> found_;  // by it
 };
 
 }  // namespace ivory

@@ -1,10 +1,13 @@
 #include "app/platform/input.h"
 
+#include <algorithm>
 #include <bitset>
 
 namespace ivory {
 
 namespace {
+
+constexpr double longest_frame = 0.1;  // seconds
 
 // Keys that come with text of their own, or change nothing in a text field.
 bool goes_with_text(Key key) {
@@ -17,7 +20,8 @@ struct FrameInProgress {
     Input& input;
     std::bitset<mouse_button_count> buttons_changed;
     std::bitset<key_count> keys_changed;
-    bool editing_key_pressed = false;
+    bool key_pressed = false;          // one that is no modifier
+    bool editing_key_pressed = false;  // one that text must not overtake
 
     // Each `take` is false, and does nothing, where the event has to wait for the next frame.
     bool take(const MouseMoved& event) {
@@ -47,18 +51,27 @@ struct FrameInProgress {
     bool take(const KeyChanged& event) {
         const auto key = static_cast<std::size_t>(event.key);
         if (keys_changed[key] || buttons_changed.any()) return false;
+        // ImGui sees the modifiers as they are at the frame's end: those of its keys
+        if (event.key >= Key::shift && key_pressed) return false;
         keys_changed.set(key);
         input.key_down[key] = event.down;
         const auto held = [&](Key k) { return input.key_down[static_cast<std::size_t>(k)]; };
         input.modifiers = {held(Key::shift), held(Key::control), held(Key::alt), held(Key::super)};
         if (event.down) {
             input.pressed.push_back({event.key, input.modifiers, event.repeated});
-            editing_key_pressed = editing_key_pressed || !goes_with_text(event.key);
+            key_pressed = key_pressed || event.key < Key::shift;
+            const Modifiers& with = input.modifiers;
+            const bool shortcut = with.control || with.alt || with.super;
+            editing_key_pressed = editing_key_pressed || !goes_with_text(event.key) ||
+                                  (shortcut && event.key < Key::shift);
         }
         return true;
     }
     bool take(const TextTyped& event) {
         if (editing_key_pressed || buttons_changed.any()) return false;
+        // a shortcut's letter is no text; Ctrl+Alt is how some systems report AltGr
+        const Modifiers& held = input.modifiers;
+        if (held.super || (held.control && !held.alt)) return true;
         input.text += event.character;
         return true;
     }
@@ -92,7 +105,8 @@ EventQueue::EventQueue(WindowSize size, double scale) {
 }
 
 Input EventQueue::next_frame(double seconds) {
-    frame_.seconds = seconds;
+    frame_.elapsed = seconds;
+    frame_.seconds = std::clamp(seconds, 1e-4, longest_frame);
     frame_.wheel = frame_.wheel_x = 0;
     frame_.pressed.clear();
     frame_.text.clear();

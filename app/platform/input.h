@@ -50,7 +50,8 @@ struct KeyPress {
 // One frame's input: what is held now, and what has happened since the frame before. A button or key
 // changes at most once in a frame (EventQueue sees to it), so that no click is lost.
 struct Input {
-    double seconds = 1.0 / 60;  // since the frame before, > 0
+    double elapsed = 1.0 / 60;  // seconds since the frame before
+    double seconds = 1.0 / 60;  // the same, > 0 and never long: animations go on after a sleep
     WindowSize size;             // of the frame buffer; 0 x 0 while minimised
     double scale = 1;           // HiDPI: everything drawn is this many times as large
 
@@ -102,7 +103,8 @@ class EventQueue {
     }
     // Nothing waits.
     [[nodiscard]] bool empty() const { return events_.empty(); }
-    // The next frame's input; with nothing waiting, what is held and nothing that happened.
+    // The next frame's input, `seconds` after the last one; with nothing waiting, what is held and
+    // nothing that happened.
     [[nodiscard]] Input next_frame(double seconds);
     // The last frame's input.
     [[nodiscard]] const Input& last_frame() const { return frame_; }

@@ -93,13 +93,13 @@ Vec3d middle_of(const SegmentSkeleton& segment) { return 0.5 * segment.a + 0.5 *
 
 std::optional<Skeleton> moved_circle(const Projection& view, CircleSkeleton circle,
                                      const std::string& handle, const HandleMotion& motion,
-                                     double scale) {
+                                     double scale, double arrow) {
     if (handle == "center") {
         const auto to = moved_place(view, circle.center, motion, scale);
         if (!to) return std::nullopt;
         circle.center = *to;
     } else if (handle == "normal") {
-        const double factor = arrow_factor(view, circle, scale);
+        const double factor = arrow_factor(view, circle.center, arrow, scale);
         const Vec3d tip = circle.center + factor * circle.normal;
         HandleMotion unrounded = motion;
         unrounded.round = false;
@@ -128,26 +128,28 @@ std::optional<Skeleton> moved_circle(const Projection& view, CircleSkeleton circ
 
 }  // namespace
 
-double arrow_factor(const Projection& view, const CircleSkeleton& circle, double scale) {
-    const double pixel = view.length_of_pixel(circle.center);
-    const double arrow = length(circle.normal);
+double arrow_factor(const Projection& view, const Vec3d& center, double arrow, double scale) {
+    const double pixel = view.length_of_pixel(center);
     return std::clamp(arrow, shortest_arrow * scale * pixel, longest_arrow * scale * pixel) / arrow;
 }
 
-std::vector<Grip> grips_of(const Projection& view, const Skeleton& skeleton, double scale) {
+std::vector<Grip> grips_of(const Projection& view, const Skeleton& skeleton, double scale,
+                           std::optional<double> arrow) {
     if (const auto* point = std::get_if<PointSkeleton>(&skeleton))
         return {{"position", point->position}};
     if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton))
         return {{"a", segment->a}, {"b", segment->b}, {"middle", middle_of(*segment)}};
     const auto& circle = std::get<CircleSkeleton>(skeleton);
+    const double factor =
+        arrow_factor(view, circle.center, arrow.value_or(length(circle.normal)), scale);
     return {{"center", circle.center},
-            {"normal", circle.center + arrow_factor(view, circle, scale) * circle.normal},
+            {"normal", circle.center + factor * circle.normal},
             {"radius", circle.center + circle.radius * radius_direction(view, circle)}};
 }
 
 std::optional<Skeleton> moved_by(const Projection& view, const Skeleton& start,
                                  const std::string& handle, const HandleMotion& motion,
-                                 double scale) {
+                                 double scale, std::optional<double> arrow) {
     if (motion.dx == 0 && motion.dy == 0 && !motion.round) return start;
     if (const auto* point = std::get_if<PointSkeleton>(&start)) {
         const auto to = moved_place(view, point->position, motion, scale);
@@ -165,7 +167,9 @@ std::optional<Skeleton> moved_by(const Projection& view, const Skeleton& start,
         const Vec3d by = *to - from;
         return SegmentSkeleton{shifted(segment->a, by), shifted(segment->b, by)};
     }
-    return moved_circle(view, std::get<CircleSkeleton>(start), handle, motion, scale);
+    const auto& circle = std::get<CircleSkeleton>(start);
+    return moved_circle(view, circle, handle, motion, scale,
+                        arrow.value_or(length(circle.normal)));
 }
 
 }  // namespace ivory

@@ -19,15 +19,16 @@ struct Grip {
     Vec3d place;
 };
 
-// The k of a normal's handle at center + k normal: 1 unless that arrow would be too short to grab
-// or too long to reach on the screen. `scale` is that of the window.
-[[nodiscard]] double arrow_factor(const Projection& view, const CircleSkeleton& circle,
+// The k of a normal's handle at center + k normal: 1 unless an arrow of that length, in the scene,
+// would be too short to grab or too long to reach on the screen. `scale` is that of the window.
+[[nodiscard]] double arrow_factor(const Projection& view, const Vec3d& center, double arrow,
                                   double scale);
 
 // The radius stands on the circle where it runs across the line of sight, so that
-// it is seen at full length.
+// it is seen at full length. `arrow` is the length that arrow_factor looks at: the normal's, or that
+// which it had when it was grabbed first, so that its tip does not leap.
 [[nodiscard]] std::vector<Grip> grips_of(const Projection& view, const Skeleton& skeleton,
-                                         double scale);
+                                         double scale, std::optional<double> arrow = std::nullopt);
 
 struct HandleMotion {
     double dx = 0, dy = 0;    // pixels since the handle was grabbed
@@ -41,6 +42,7 @@ struct HandleMotion {
 // ends at 0. Nothing where the pointer's line of sight does not meet the axis' plane.
 [[nodiscard]] std::optional<Skeleton> moved_by(const Projection& view, const Skeleton& start,
                                                const std::string& handle,
-                                               const HandleMotion& motion, double scale);
+                                               const HandleMotion& motion, double scale,
+                                               std::optional<double> arrow = std::nullopt);
 
 }  // namespace ivory

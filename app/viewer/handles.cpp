@@ -62,6 +62,24 @@ std::optional<int> axis_of(Key key) {
     return std::nullopt;
 }
 
+// Escape, and Ctrl+Z: what it would undo is not done yet.
+bool cancels(const KeyPress& press) {
+    const Modifiers& with = press.modifiers;
+    if (with.alt || with.super) return false;
+    // while Shift and Ctrl are held for the drag, too
+    return press.key == Key::escape || (press.key == Key::z && with.control && !with.shift);
+}
+
+// What grips_of is to go by: nothing where the normal's own length serves.
+std::optional<double> arrow_of(const ViewerState& state, std::size_t element) {
+    const auto& kept = state.arrow;
+    const auto* circle =
+        std::get_if<CircleSkeleton>(&state.document.scene().elements[element].skeleton);
+    if (!kept || circle == nullptr || kept->element != element || kept->normal != circle->normal)
+        return std::nullopt;
+    return kept->length;
+}
+
 void set_camera(ViewerState& state, const Camera& camera) {
     if (camera == state.view.camera) return;
     state.view.camera = camera;
@@ -75,7 +93,8 @@ std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
     const Scene& scene = state.document.scene();
     if (element >= scene.elements.size()) return handles;
     const Projection view = state.projection();
-    for (Grip& grip : grips_of(view, scene.elements[element].skeleton, state.scale)) {
+    for (Grip& grip : grips_of(view, scene.elements[element].skeleton, state.scale,
+                               arrow_of(state, element))) {
         const auto in_view = view.project(grip.place);
         if (!in_view) continue;
         const WindowPoint seen{in_view->x + state.viewport.x, in_view->y + state.viewport.y};
@@ -86,14 +105,27 @@ std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
     return handles;
 }
 
+void ViewportMouse::follow(ViewerState& state, const Input& input) {
+    if (does_ != Does::drag || !state.document.dragging()) return;
+    drag(state, input);
+    last_ = input.mouse;
+}
+
 void ViewportMouse::update(ViewerState& state, const Input& input) {
-    clock_ += input.seconds;
+    clock_ += input.elapsed;
     // the drag was ended by something else: another document was opened
     if (does_ == Does::drag && !state.document.dragging()) let_go();
 
     const bool has_moved = input.mouse != last_;
-    if (does_ == Does::grab) begin_drag(state);
-    if (does_ == Does::drag || has_moved) move(state, input);
+    bool just_begun = false;
+    if (does_ == Does::grab) {
+        begin_drag(state);
+        just_begun = does_ == Does::drag && input.down(button_) && input.pressed.empty();
+        // its first way waits for `follow`, if there is another frame of it
+        if (does_ == Does::drag && !just_begun) drag(state, input);
+    } else if (has_moved) {
+        move(state, input);
+    }
     hover(state, input);
     if (does_ == Does::nothing) {
         press(state, input);
@@ -106,7 +138,7 @@ void ViewportMouse::update(ViewerState& state, const Input& input) {
     if (input.wheel != 0 && free && (does_ == Does::nothing || does_ == Does::press))
         set_camera(state, zoomed(state.projection(), in_picture(state, input.mouse), input.wheel));
 
-    last_ = input.mouse;
+    if (!just_begun) last_ = input.mouse;
     was_down_ = input.mouse_down;
     if (does_ == Does::drag || does_ == Does::grab || does_ == Does::pan)
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
@@ -164,6 +196,10 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     for (const Handle& handle : handles_of(state, grabbed_->element))
         if (handle.name == grabbed_->name) grabbed_ = handle;
     start_ = scene.elements[grabbed_->element].skeleton;
+    if (const auto* circle = std::get_if<CircleSkeleton>(&start_)) {
+        const Vec3d& n = circle->normal;
+        arrow_ = arrow_of(state, grabbed_->element).value_or(std::hypot(n.x, n.y, n.z));
+    }
     grabbed_from_ = grabbed_->place;
     grabbed_at_ = grabbed_->at;
     dx_ = dy_ = 0;
@@ -188,11 +224,9 @@ void ViewportMouse::move(ViewerState& state, const Input& input) {
         case Does::pan:
             set_camera(state, panned(state.projection(), dx, dy));
             return;
-        case Does::drag:
-            drag(state, input);
-            return;
         case Does::nothing:
         case Does::grab:
+        case Does::drag:
         case Does::ignore:
             return;
     }
@@ -202,11 +236,14 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
     bool changed = input.mouse != last_;
     for (const KeyPress& press : input.pressed) {
         if (press.repeated) continue;
-        if (press.key == Key::escape) {
+        if (cancels(press)) {
             state.document.cancel_drag();
             let_go();
             return;
         }
+        // Shift and Ctrl are the drag's own, but Ctrl+X is no X
+        const Modifiers& with = press.modifiers;
+        if (with.control || with.alt || with.super) continue;
         if (const auto axis = axis_of(press.key)) {
             axis_ = axis_ == axis ? std::nullopt : axis;
             changed = true;
@@ -221,7 +258,7 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
     dy_ += share * (input.mouse.y - last_.y);
     const Projection view = state.projection();
     const auto skeleton =
-        moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale);
+        moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale, arrow_);
     if (!skeleton) return;
     Scene scene = state.document.scene();
     Element& element = scene.elements[grabbed_->element];
@@ -236,18 +273,15 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
         grabbed_->at = {grabbed_at_.x + seen->x - seen_before->x,
                         grabbed_at_.y + seen->y - seen_before->y};
     }
+    if (const auto* circle = std::get_if<CircleSkeleton>(&*skeleton);
+        circle != nullptr && grabbed_->name == "normal")
+        state.arrow = KeptArrow{grabbed_->element, circle->normal, arrow_};
     state.document.drag_to(std::move(scene));
 }
 
 Vec3d ViewportMouse::place_of(const Projection& view, const Skeleton& skeleton,
                               double scale) const {
-    // An arrow keeps the factor that it was grabbed with, so that its tip stays under the pointer.
-    const auto* circle = std::get_if<CircleSkeleton>(&skeleton);
-    if (circle != nullptr && grabbed_->name == "normal") {
-        const auto& before = std::get<CircleSkeleton>(start_);
-        return circle->center + arrow_factor(view, before, scale) * circle->normal;
-    }
-    for (const Grip& grip : grips_of(view, skeleton, scale))
+    for (const Grip& grip : grips_of(view, skeleton, scale, arrow_))
         if (grip.name == grabbed_->name) return grip.place;
     return grabbed_->place;
 }

@@ -38,6 +38,9 @@ inline constexpr double grab_radius = 11;
 // for the life of the viewer.
 class ViewportMouse {
   public:
+    // Before draw_panels: a handle that is held goes where the pointer is, so that fields and overlay
+    // show the same scene.
+    void follow(ViewerState& state, const Input& input);
     // After draw_panels, before draw_overlay; only what no panel takes (ImGui's WantCaptureMouse).
     void update(ViewerState& state, const Input& input);
     // A handle is held: keys X, Y, Z and Escape belong to the drag.
@@ -88,6 +91,7 @@ class ViewportMouse {
     WindowPoint grabbed_at_;  // the handle's, in the window
     double dx_ = 0, dy_ = 0;  // of the drag, pixels; with Shift fewer than the pointer's
     bool round_ = false;
+    double arrow_ = 1;  // the length that a normal's arrow goes by
 };
 
 }  // namespace ivory

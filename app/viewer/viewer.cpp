@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/panels/actions.h"
+#include "app/panels/fields.h"
 #include "app/panels/panels.h"
 #include "app/platform/imgui_input.h"
 #include "app/platform/imgui_renderer.h"
@@ -93,6 +96,8 @@ struct Viewer::Parts {
     std::array<bool, mouse_button_count> mouse_down{};  // in the frame before
     std::optional<Clock::time_point> edited;  // when the picture that is awaited was asked for
     ViewerTimes times;
+    std::string fault_said;  // the picture's
+    std::size_t glyphs_loaded = 0;  // of state.glyphs
 
     Parts(Context& the_context, ViewerSettings the_settings)
         : context(the_context),
@@ -114,8 +119,10 @@ struct Viewer::Parts {
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();
-        if (!state.picture.fault.empty() && state.message.text != state.picture.fault)
-            state.say_error(state.picture.fault);
+        if (fault_said != state.picture.fault) {
+            fault_said = state.picture.fault;
+            if (!fault_said.empty()) state.say_error(fault_said);
+        }
         const Asked shown{state.picture.scene, state.picture.camera, state.picture.size};
         if (!change.replaced || shown != asked) return std::nullopt;
         return std::exchange(edited, std::nullopt);
@@ -124,8 +131,12 @@ struct Viewer::Parts {
     void set_style(const Input& input) {
         if (input.theme) state.theme = *input.theme;
         state.scale = input.scale;
-        if (!style || style->second != input.scale) {
-            state.fonts = load_fonts(input.scale);
+        static_cast<void>(names_of(state));  // which wants their glyphs
+        if (const auto& path = state.document.path()) want_glyphs(state, path->filename().string());
+        if (!style || style->second != input.scale || glyphs_loaded != state.glyphs.size()) {
+            glyphs_loaded = state.glyphs.size();
+            const std::vector<char16_t> glyphs(state.glyphs.begin(), state.glyphs.end());
+            state.fonts = load_fonts(input.scale, glyphs);
             imgui_renderer.upload_fonts();
         }
         if (style != std::pair(state.theme, input.scale)) apply_theme(state.theme, input.scale);
@@ -218,6 +229,7 @@ void Viewer::frame(const Input& input) {
     parts.minimised = input.size.width < 1 || input.size.height < 1;
     if (parts.minimised) return;
 
+    age_message(state, input.elapsed);
     const std::optional<Clock::time_point> edit_shown = parts.take_picture(input);
     if (something_happened(input) || state.window != input.size || state.scale != input.scale ||
         parts.mouse_down != input.mouse_down)
@@ -232,6 +244,7 @@ void Viewer::frame(const Input& input) {
     ImGui::NewFrame();
     state.widgets.clear();
     handle_keys(state, input);
+    parts.mouse.follow(state, input);
     draw_panels(state);
     parts.frame_automatic_view();
     parts.mouse.update(state, input);

@@ -127,7 +127,6 @@ void run_window(const WindowSettings& settings) {
     viewer_settings.renderer_yields = true;
     Viewer viewer(*window, std::move(viewer_settings));
     connect_clipboard(*window);
-    viewer.state().widgets.whole_lists = false;
     keeper.begin(viewer.state(), *window);
     if (settings.scene) {
         const std::string before = viewer.state().message.text;
@@ -150,9 +149,7 @@ void run_window(const WindowSettings& settings) {
             window->wait_events(events, 0);
         }
         const Clock::time_point now = Clock::now();
-        // after a sleep animations go on where they were
-        const double seconds =
-            std::clamp(std::chrono::duration<double>(now - last).count(), 1e-4, 0.1);
+        const double seconds = std::chrono::duration<double>(now - last).count();
         last = now;
         viewer.frame(events.next_frame(seconds));
         if (const std::string wanted = viewer.title(); wanted != title) {

@@ -171,15 +171,17 @@ void read_if_there(const Members& members, std::string_view key, Value& value) {
     if (const std::optional<Node> member = members.optional(key)) read(*member, value);
 }
 
-// One of `words`, by its place among them.
-std::size_t one_of(const Node& node, Words words) {
+// One of `words`, by its place among them; a message offers the first `offered` of them.
+std::size_t one_of(const Node& node, Words words, std::size_t offered) {
     if (node.value.kind() == JsonKind::text) {
         for (std::size_t i = 0; i < words.size(); ++i) {
             if (node.value.is_text(words[i])) return i;
         }
     }
-    throw node.wrong_kind(listed(words, "or"));
+    throw node.wrong_kind(listed(words.first(offered), "or"));
 }
+
+std::size_t one_of(const Node& node, Words words) { return one_of(node, words, words.size()); }
 
 void read(const Node& node, double& number) {
     node.must_be(JsonKind::number, "a number");
@@ -250,7 +252,7 @@ void read_element(const Node& node, std::string_view name, Element& element) {
 void read(const Node& node, Element& element) {
     node.must_be(JsonKind::object, "an object with a shape");
     const Node shape = node.required("shape", element_format);
-    switch (one_of(shape, shapes)) {
+    switch (one_of(shape, shapes, built_shapes)) {
         case 0:
             return read_element<PointSkeleton>(node, "a point", element);
         case 1:

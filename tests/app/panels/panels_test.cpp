@@ -164,6 +164,89 @@ TEST(Number, AClickOpensItAndEscapeLeavesItAsItWas) {
     EXPECT_EQ(bench.scene().threshold, 7);
 }
 
+TEST(Number, TheSameNumberInOtherWordsIsNoChange) {
+    ViewerBench bench(figure());
+    const auto before = bench.state.document.scene_value();
+    // the lights are the default ones, not written out
+    bench.enter("light.0.intensity", number_text(default_lights()[0].intensity) + "e0");
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    EXPECT_EQ(bench.state.document.undo_name(), "Open");
+}
+
+TEST(Number, FarFromTheOriginEveryDigitIsShown) {
+    Scene scene = figure();
+    scene.elements[0].skeleton = PointSkeleton{{4500000.5, 5100000, 300}};
+    scene.camera = Camera{{4500000, 5100000, 310}, {4500000, 5100000, 300}};
+    ViewerBench bench(scene);
+    bench.state.document.select(0);
+    bench.turns(3);
+    const WindowRect x = bench.state.widgets.find("element.position.x")->rect;
+    const WindowRect y = bench.state.widgets.find("element.position.y")->rect;
+    EXPECT_GT(y.y, x.y);  // one below the other, each with room for
+    EXPECT_GT(x.width, ImGui::CalcTextSize("-4500000.123456789").x + 14);
+}
+
+TEST(Text, WhatHasNoRoomEndsInAnEllipsis) {
+    ViewerBench bench;
+    const std::string text = "Gr\xC3\xB6\xC3\x9F" "e of the first ring";
+    ImGui::NewFrame();
+    const float whole = ImGui::CalcTextSize(text.c_str()).x;
+    EXPECT_EQ(fitted_text(text, whole), text);
+    for (float width = 0; width < whole; width += 3) {
+        const std::string cut = fitted_text(text, width);
+        EXPECT_TRUE(cut.ends_with("\xE2\x80\xA6"));
+        EXPECT_FALSE(first_invalid_utf8(cut));
+        if (width > 20) EXPECT_LE(ImGui::CalcTextSize(cut.c_str()).x, width);
+    }
+    ImGui::EndFrame();
+}
+
+TEST(Text, WhatNoFontDrawsIsToldApart) {
+    ViewerBench bench;
+    const std::string text = "C\xCE\xB1 \xF0\x9F\xA7\xAC \xE5\x8E\x9F";
+    const std::string other = "C\xCE\xB1 \xF0\x9F\xA7\xAD \xE5\x8E\x9F";
+    const std::string shown = shown_text(bench.state, text);
+    EXPECT_EQ(shown, "C\xCE\xB1 \\u{1F9EC} \\u{539F}");
+    EXPECT_NE(shown, shown_text(bench.state, other));
+    EXPECT_EQ(meant_text(shown), text);
+    for (const char* plain : {"", "\\u{", "\\u{}", "\\u{zz}", "\\u{D800}", "\\u{110000}", "\\u{41}"})
+        EXPECT_EQ(meant_text(plain), plain);
+}
+
+TEST(Text, ANameThatTheFieldCannotShowIsKeptThroughEnter) {
+    Scene scene = figure();
+    scene.elements[0].name = "helix \xF0\x9F\xA7\xAC";
+    ViewerBench bench(scene);
+    bench.state.document.select(0);
+    bench.turns(3);
+    const auto before = bench.state.document.scene_value();
+    bench.click("element.name");
+    bench.key(Key::enter);
+    EXPECT_EQ(bench.state.document.scene_value(), before);
+    bench.click("element.name");
+    bench.key(Key::end);
+    bench.type(" 2");
+    bench.key(Key::enter);
+    EXPECT_EQ(bench.element(0).name, "helix \xF0\x9F\xA7\xAC 2");
+}
+
+TEST(Text, LettersOfOtherScriptsComeFromTheSystemsFonts) {
+    ViewerBench bench;
+    const std::vector<char16_t> letters = {0x05D0, 0x539F, 0x0414, 0x03B1};
+    const Fonts fonts = load_fonts(1, letters);
+    ASSERT_TRUE(ImGui::GetIO().Fonts->Build());
+    EXPECT_TRUE(fonts.have(0x0414));
+    EXPECT_TRUE(fonts.have(0x03B1));
+    std::size_t from_files = 0;
+    for (const FontFile& file : *fonts.files)
+        for (const char16_t c : file.characters) {
+            EXPECT_TRUE(fonts.have(c));
+            ++from_files;
+        }
+    EXPECT_LE(from_files, 2u);  // of those two that the built-in typeface lacks
+    EXPECT_FALSE(fonts.have(U'\U0001F9EC'));
+}
+
 TEST(Number, TabGoesToTheNext) {
     ViewerBench bench(figure());
     bench.state.document.select(0);
@@ -288,6 +371,59 @@ TEST(Threshold, TheSliderReachesFromAThousandthToBeyondTheField) {
     EXPECT_EQ(bench.state.document.undo_name(), "Change threshold");
 }
 
+TEST(Threshold, TheSliderRunsOverWhatManyElementsAddUpTo) {
+    Scene scene;
+    for (int i = 0; i < 3001; ++i) {
+        Element element;
+        element.skeleton = PointSkeleton{{0, 0, 0}};
+        element.strength = 0.01;
+        scene.elements.push_back(element);
+    }
+    scene.threshold = 10;
+    ViewerBench bench(scene);
+    const WindowRect rect = bench.state.widgets.find("threshold.slider")->rect;
+    const double y = rect.y + 0.4 * rect.height;
+    // wherever it is pressed, a pixel makes no leap
+    for (double x = rect.x + 10; x < rect.x + rect.width - 10; x += 7) {
+        bench.click(WindowPoint{x, y});
+        const double before = bench.scene().threshold;
+        bench.move_to({x, y});
+        bench.press();
+        EXPECT_EQ(bench.scene().threshold, before) << "a press on the knob moves nothing";
+        bench.move_to({x + 1, y});
+        EXPECT_GT(bench.scene().threshold, before);
+        EXPECT_LT(bench.scene().threshold, 1.15 * before);
+        bench.release();
+    }
+    bench.click(WindowPoint{rect.x + rect.width - 1.0, y});
+    EXPECT_GE(bench.scene().threshold, 30);
+    EXPECT_LE(bench.scene().threshold, 60);
+}
+
+TEST(Threshold, TheSliderHoldsTheThresholdThatStands) {
+    for (const double threshold : {1e-9, 1e-4, 0.5, 7.0, 1e6}) {
+        ViewerBench bench(figure());
+        bench.enter("threshold", number_text(threshold));
+        bench.turns(2);
+        EXPECT_LE(bench.state.panels.thresholds.least, threshold);
+        EXPECT_GE(bench.state.panels.thresholds.most, threshold);
+    }
+}
+
+TEST(Threshold, TheSlidersEndsStayWhileItIsDragged) {
+    ViewerBench bench(figure());
+    const WindowRect rect = bench.state.widgets.find("threshold.slider")->rect;
+    const ThresholdRange before = bench.state.panels.thresholds;
+    bench.move_to({rect.x + 40.0, rect.y + 8.0});
+    bench.press();
+    for (double x = rect.x; x < rect.x + rect.width; x += 9) {
+        bench.move_to({x, rect.y + 8.0});
+        EXPECT_EQ(bench.state.panels.thresholds.least, before.least);
+        EXPECT_EQ(bench.state.panels.thresholds.most, before.most);
+    }
+    bench.release();
+}
+
 TEST(Elements, EachShapeIsAddedSelectedAndValid) {
     ViewerBench bench;
     for (const char* shape : {"point", "segment", "circle"}) {
@@ -348,8 +484,12 @@ TEST(Elements, RenamedByTypingButNeverToAnothersName) {
     EXPECT_EQ(bench.element(0).name, std::nullopt);
 }
 
-TEST(Elements, AThousandRowsAreRecordedThoughFewAreDrawn) {
+TEST(Elements, AThousandRowsAreFoundThoughFewAreDrawn) {
     ViewerBench bench(points(1000));
+    std::size_t rows = 0;
+    for (const auto& [id, widget] : bench.state.widgets.all()) rows += id.starts_with("row.");
+    EXPECT_LE(rows, 60u);  // two controls each, as many as have room
+    EXPECT_NE(bench.state.widgets.find("row.point 1000.visible"), nullptr);
     EXPECT_NE(bench.state.widgets.find("row.point 1000"), nullptr);
     EXPECT_FALSE(bench.state.widgets.find("row.point 1000")->visible_part());
     bench.state.document.select(999);
@@ -379,6 +519,59 @@ TEST(Inspector, KernelColorAndVisibility) {
     bench.key(Key::escape);
     EXPECT_EQ(bench.state.widgets.find("element.color.r"), nullptr);
     EXPECT_EQ(bench.state.document.selected(), 0u);  // Escape was the popup's
+}
+
+TEST(Inspector, AColourTypedInHexReplacesTheOldOneOrIsRefused) {
+    Scene scene = figure();
+    scene.elements[0].color = {0.123456789, 0.3, 0.7000001};  // no bytes are exactly that
+    ViewerBench bench(scene);
+    bench.state.document.select(0);
+    bench.turn();
+    bench.enter("threshold", "0.6");
+    bench.key(Key::z, {.control = true});
+    const auto before = bench.state.document.scene_value();
+    bench.click("element.color");
+    bench.turns(3);
+    const auto is_untouched = [&] {
+        EXPECT_EQ(bench.state.document.scene_value(), before);
+        EXPECT_EQ(bench.state.document.undo_name(), "Open");
+        EXPECT_EQ(bench.state.document.redo_name(), "Change threshold");
+    };
+    bench.click("element.color.hex");
+    bench.key(Key::enter);
+    is_untouched();
+    for (const char* wrong : {"#3366c", "red", "#3366cg", "-1-1-1", ""}) {
+        SCOPED_TRACE(wrong);
+        bench.state.message = {};
+        bench.click("element.color.hex");
+        if (*wrong == '\0') bench.key(Key::del);
+        bench.type(wrong);
+        bench.key(Key::enter);
+        is_untouched();
+        EXPECT_TRUE(bench.state.message.error);
+    }
+    // a click selects what stands there
+    bench.click("element.color.hex");
+    bench.type("#3366cc");
+    bench.key(Key::enter);
+    EXPECT_NEAR(bench.element(0).color.x, 0.0331, 1e-4);
+    EXPECT_NEAR(bench.element(0).color.y, 0.1329, 1e-4);
+    EXPECT_NEAR(bench.element(0).color.z, 0.6038, 1e-4);
+    EXPECT_EQ(bench.state.document.undo_name(), "Change colour of point 1");
+}
+
+TEST(Messages, GoAfterAWhileAndGiveWayToAHint) {
+    ViewerBench bench(figure());
+    bench.state.say("Screenshot: figure-1.png");
+    bench.turns(3 * 60);
+    EXPECT_FALSE(bench.state.message.text.empty());
+    bench.turns(2 * 60);
+    EXPECT_TRUE(bench.state.message.text.empty());
+    bench.state.say_error("it is wrong");
+    bench.turns(5 * 60);
+    EXPECT_FALSE(bench.state.message.text.empty());
+    age_message(bench.state, 20);  // a sleep of the window's loop
+    EXPECT_TRUE(bench.state.message.text.empty());
 }
 
 TEST(Lights, TheDefaultOnesAreWrittenOutWhenOneChanges) {
@@ -430,6 +623,39 @@ TEST(Keys, DoWhatTheTableSays) {
     EXPECT_TRUE(bench.state.document.selected());
     bench.key(Key::escape);
     EXPECT_FALSE(bench.state.document.selected());
+}
+
+TEST(Keys, WithAModifierMoreAreOtherKeys) {
+    const auto press = [](ViewerBench& bench, Key modifier, Key key) {
+        bench.hold(modifier);
+        bench.hold(key);
+        bench.let(key);
+        bench.let(modifier);
+        bench.turns(2);
+    };
+    for (const Key modifier : {Key::alt, Key::super}) {
+        for (const Key key : {Key::h, Key::f, Key::s, Key::tab, Key::del, Key::escape, Key::home,
+                              Key::digit1, Key::digit3, Key::digit7, Key::f12}) {
+            SCOPED_TRACE(static_cast<int>(key));
+            ViewerBench bench(figure());
+            bench.state.document.select(0);
+            bench.turn();
+            const auto before = bench.state.document.scene_value();
+            const Camera camera = bench.state.view.camera;
+            press(bench, modifier, key);
+            EXPECT_EQ(bench.state.document.scene_value(), before);
+            EXPECT_EQ(bench.state.document.selected(), 0u);
+            EXPECT_EQ(bench.state.view.camera, camera);
+            EXPECT_TRUE(bench.state.skeleton_shown);
+            EXPECT_FALSE(bench.state.panels_hidden);
+            EXPECT_FALSE(bench.state.screenshot_wanted);
+        }
+        ViewerBench bench(figure());
+        bench.hold(modifier);
+        bench.type("?");
+        bench.let(modifier);
+        EXPECT_FALSE(bench.state.help_shown);
+    }
 }
 
 TEST(Keys, BelongToATextFieldWhileItIsTypedInto) {

@@ -40,6 +40,7 @@ class ViewerBench {
 
     ViewerState state;
     ViewportMouse mouse;
+    Document::SceneValue scene_of_panels;  // that the last frame's panels showed
 
     [[nodiscard]] const Scene& scene() const { return state.document.scene(); }
     [[nodiscard]] const Element& element(std::size_t i) const { return scene().elements[i]; }
@@ -53,8 +54,11 @@ class ViewerBench {
             feed_imgui(input);
             ImGui::NewFrame();
             state.widgets.clear();
+            age_message(state, input.elapsed);
             handle_keys(state, input);
+            mouse.follow(state, input);
             draw_panels(state);
+            scene_of_panels = state.document.scene_value();
             mouse.update(state, input);
             draw_overlay(state, mouse, *ImGui::GetBackgroundDrawList());
             ImGui::Render();

@@ -17,8 +17,9 @@ EventQueue queue_of(std::initializer_list<Event> events) {
 TEST(EventQueue, WithoutEventsAFrameHoldsWhatIsHeld) {
     EventQueue queue = queue_of({MouseMoved{{3, 4}}, MouseButtonChanged{MouseButton::left, true}});
     static_cast<void>(queue.next_frame(a_frame));
-    const Input input = queue.next_frame(0.5);
-    EXPECT_EQ(input.seconds, 0.5);
+    const Input input = queue.next_frame(0.05);
+    EXPECT_EQ(input.seconds, 0.05);
+    EXPECT_EQ(input.elapsed, 0.05);
     EXPECT_EQ(input.mouse, (WindowPoint{3, 4}));
     EXPECT_TRUE(input.mouse_inside);
     EXPECT_TRUE(input.down(MouseButton::left));
@@ -76,6 +77,46 @@ TEST(EventQueue, ALettersTextComesWithItsKey) {
                                  KeyChanged{Key::b, true, false}, TextTyped{U'b'}});
     EXPECT_EQ(queue.next_frame(a_frame).text, U"ab");
     EXPECT_TRUE(queue.empty());
+}
+
+TEST(EventQueue, AfterASleepTheClockIsRightAndAnimationsDoNotLeap) {
+    EventQueue queue = queue_of({});
+    const Input input = queue.next_frame(4);
+    EXPECT_EQ(input.elapsed, 4);
+    EXPECT_EQ(input.seconds, 0.1);
+}
+
+TEST(EventQueue, AQuickShortcutKeepsItsModifierAndIsNotOvertakenByText) {
+    EventQueue queue = queue_of(
+        {KeyChanged{Key::control, true, false}, KeyChanged{Key::a, true, false},
+         KeyChanged{Key::control, false, false}, KeyChanged{Key::a, false, false}, TextTyped{U'1'}});
+    const Input first = queue.next_frame(a_frame);
+    ASSERT_EQ(first.pressed.size(), 1u);
+    EXPECT_TRUE(first.modifiers.control);  // as ImGui sees it together with the key
+    EXPECT_TRUE(first.key_down[static_cast<std::size_t>(Key::a)]);
+    EXPECT_TRUE(first.text.empty());
+    const Input second = queue.next_frame(a_frame);
+    EXPECT_FALSE(second.modifiers.control);
+    EXPECT_EQ(second.text, U"1");
+    EXPECT_TRUE(queue.empty());
+}
+
+TEST(EventQueue, AModifierAfterAKeyIsNotTakenForItsOwn) {
+    EventQueue queue =
+        queue_of({KeyChanged{Key::z, true, false}, KeyChanged{Key::control, true, false}});
+    EXPECT_FALSE(queue.next_frame(a_frame).modifiers.control);
+    EXPECT_TRUE(queue.next_frame(a_frame).modifiers.control);
+}
+
+TEST(EventQueue, AShortcutsLetterIsNoText) {
+    for (const Key key : {Key::control, Key::super}) {
+        EventQueue queue = queue_of({KeyChanged{key, true, false}, TextTyped{U'v'}});
+        EXPECT_TRUE(queue.next_frame(a_frame).text.empty());
+        EXPECT_TRUE(queue.empty());
+    }
+    EventQueue queue = queue_of({KeyChanged{Key::control, true, false},
+                                 KeyChanged{Key::alt, true, false}, TextTyped{U'@'}});
+    EXPECT_EQ(queue.next_frame(a_frame).text, U"@");  // AltGr
 }
 
 TEST(EventQueue, WhatTheWindowSystemSaysArrivesOnce) {

@@ -174,6 +174,73 @@ TEST(Handles, TheSameKeyAgainUnlocks) {
     EXPECT_NEAR(bench.handle("position").seen.x, before.seen.x + 20, 1e-7);
 }
 
+TEST(Handles, AShortcutWithModifiersIsNoAxis) {
+    for (const Key held : {Key::control, Key::alt, Key::super}) {
+        for (const Key letter : {Key::x, Key::y, Key::z}) {
+            SCOPED_TRACE(static_cast<int>(held) * 1000 + static_cast<int>(letter));
+            ViewerBench bench(figure());
+            bench.state.document.select(0);
+            bench.turn();
+            const auto before = bench.state.document.scene_value();
+            const Handle handle = bench.handle("position");
+            bench.move_to(handle.at);
+            bench.press();
+            bench.move_to({handle.at.x + 53, handle.at.y + 7});
+            bench.hold(held);
+            bench.hold(letter);
+            EXPECT_EQ(bench.mouse.locked_axis(), std::nullopt);
+            bench.let(letter);
+            bench.let(held);
+            bench.move_to({handle.at.x + 54, handle.at.y + 7});
+            bench.release();
+            bench.turns(2);
+            if (held == Key::control && letter == Key::z) {
+                EXPECT_EQ(bench.state.document.scene_value(), before);  // the drag is cancelled
+                EXPECT_EQ(bench.state.document.undo_name(), "Open");
+                EXPECT_EQ(bench.state.document.redo_name(), "");
+            } else {
+                EXPECT_NEAR(bench.handle("position").seen.x, handle.seen.x + 54, 1e-7);
+                EXPECT_NEAR(bench.handle("position").seen.y, handle.seen.y + 7, 1e-7);
+            }
+        }
+    }
+}
+
+TEST(Handles, AFieldShowsTheSceneOfTheLabelInTheSameFrame) {
+    ViewerBench bench(figure());
+    bench.state.document.select(0);
+    bench.turn();
+    const Handle handle = bench.handle("position");
+    bench.move_to(handle.at);
+    bench.press();
+    for (int step = 1; step <= 5; ++step) {
+        bench.move_to({handle.at.x + 10 * step, handle.at.y});
+        if (step > 1) EXPECT_EQ(bench.scene_of_panels, bench.state.document.scene_value());
+    }
+    bench.release();
+}
+
+TEST(Handles, ATiltedNormalsTipStaysWhereItIsLetGo) {
+    for (const double away : {-60.0, 45.0, 120.0}) {
+        ViewerBench bench(figure());
+        bench.state.document.select(2);
+        bench.turn();
+        for (int again = 0; again < 2; ++again) {
+            const Handle before = bench.handle("normal");
+            bench.move_to(before.at);
+            bench.press();
+            bench.move_to({before.at.x + away, before.at.y + 20});
+            bench.turn();
+            const Handle held = *bench.mouse.grabbed();
+            bench.release();
+            bench.turns(2);
+            const Handle after = bench.handle("normal");
+            EXPECT_NEAR(after.at.x, held.at.x, 1e-6);
+            EXPECT_NEAR(after.at.y, held.at.y, 1e-6);
+        }
+    }
+}
+
 TEST(Handles, ShiftIsTenTimesFiner) {
     ViewerBench bench(figure());
     bench.state.document.select(0);
