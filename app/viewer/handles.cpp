@@ -117,12 +117,9 @@ void ViewportMouse::update(ViewerState& state, const Input& input) {
     if (does_ == Does::drag && !state.document.dragging()) let_go();
 
     const bool has_moved = input.mouse != last_;
-    bool just_begun = false;
     if (does_ == Does::grab) {
         begin_drag(state);
-        just_begun = does_ == Does::drag && input.down(button_) && input.pressed.empty();
-        // its first way waits for `follow`, if there is another frame of it
-        if (does_ == Does::drag && !just_begun) drag(state, input);
+        if (does_ == Does::drag) drag(state, input);  // from now on `follow` does it
     } else if (has_moved) {
         move(state, input);
     }
@@ -138,7 +135,7 @@ void ViewportMouse::update(ViewerState& state, const Input& input) {
     if (input.wheel != 0 && free && (does_ == Does::nothing || does_ == Does::press))
         set_camera(state, zoomed(state.projection(), in_picture(state, input.mouse), input.wheel));
 
-    if (!just_begun) last_ = input.mouse;
+    last_ = input.mouse;
     was_down_ = input.mouse_down;
     if (does_ == Does::drag || does_ == Does::grab || does_ == Does::pan)
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);

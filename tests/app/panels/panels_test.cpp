@@ -196,7 +196,9 @@ TEST(Text, WhatHasNoRoomEndsInAnEllipsis) {
         const std::string cut = fitted_text(text, width);
         EXPECT_TRUE(cut.ends_with("\xE2\x80\xA6"));
         EXPECT_FALSE(first_invalid_utf8(cut));
-        if (width > 20) EXPECT_LE(ImGui::CalcTextSize(cut.c_str()).x, width);
+        if (width > 20) {
+            EXPECT_LE(ImGui::CalcTextSize(cut.c_str()).x, width);
+        }
     }
     ImGui::EndFrame();
 }

@@ -215,7 +215,9 @@ TEST(Handles, AFieldShowsTheSceneOfTheLabelInTheSameFrame) {
     bench.press();
     for (int step = 1; step <= 5; ++step) {
         bench.move_to({handle.at.x + 10 * step, handle.at.y});
-        if (step > 1) EXPECT_EQ(bench.scene_of_panels, bench.state.document.scene_value());
+        if (step > 1) {
+            EXPECT_EQ(bench.scene_of_panels, bench.state.document.scene_value());
+        }
     }
     bench.release();
 }
