@@ -41,7 +41,8 @@ constexpr std::array handles = {
     Binding{"X / Y / Z", "lock to an axis, while dragging"},
     Binding{"Shift", "finer, while dragging"},
     Binding{"Ctrl", "round numbers, while dragging"},
-    Binding{"Esc", "cancel the drag; select nothing"},
+    Binding{"Esc / Ctrl+Z", "cancel the drag"},
+    Binding{"Esc", "select nothing"},
 };
 constexpr std::array editing = {
     Binding{"Ctrl+Z", "undo"},      Binding{"Ctrl+Shift+Z / Ctrl+Y", "redo"},

@@ -64,6 +64,7 @@ std::vector<std::size_t> fullest_places(const Field& field, std::size_t count) {
 double greatest_field(const Scene& scene) {
     constexpr std::size_t most_evaluations = 200'000, most_places = 64;
     double greatest = 0;
+    if (scene.elements.empty()) return 1;
     for (const Element& element : scene.elements)
         if (element.visible) greatest = std::max(greatest, element.strength);
     const Field field = compile(scene);
@@ -196,7 +197,7 @@ void draw_slider(ViewerState& state) {
     if (scale.is_log()) {
         // whole decades, a few of them
         const double stride = std::max(1.0, std::ceil(scale.decades() / 4));
-        const double lowest = std::floor(std::log10(range.least)) + stride;
+        const double lowest = std::ceil(std::log10(range.least) + 0.7 * stride);
         for (double power = lowest; power < std::log10(range.most) - 0.7 * stride; power += stride)
             ticks.push_back(std::pow(10.0, power));
     } else {
