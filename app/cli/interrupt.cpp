@@ -48,6 +48,8 @@ void watch_interrupts() {
 
 bool interrupted() noexcept { return number.load(std::memory_order_relaxed) != 0; }
 
+const std::atomic<bool>& interruption() noexcept { return flag; }
+
 void stop_if_interrupted() {
     if (interrupted()) throw Interrupted();
 }

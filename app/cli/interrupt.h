@@ -1,6 +1,7 @@
 // Ctrl+C, a closed terminal and the like: a flag that long work looks at.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <thread>
 
@@ -16,6 +17,9 @@ struct Interrupted {};
 void watch_interrupts();
 
 [[nodiscard]] bool interrupted() noexcept;
+
+// The flag itself, for those who look at it on their own.
+[[nodiscard]] const std::atomic<bool>& interruption() noexcept;
 
 // Throws Interrupted where the flag is up.
 void stop_if_interrupted();

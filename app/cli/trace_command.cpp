@@ -122,6 +122,7 @@ class Tracer {
 
     void answer(const std::vector<std::string_view>& lines, Chunk& chunk) const {
         Counts counts;
+        counts.stop = Cancellation(interruption());
         for (std::size_t line = chunk.begin; line < chunk.end && !interrupted(); ++line) {
             std::optional<Ray> ray;
             try {

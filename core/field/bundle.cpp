@@ -43,9 +43,11 @@ constexpr double parts_apart = 1;
 }  // namespace
 
 bool BundleField::build(const Field& field, const ElementList& list, const Bundle& bundle,
-                        double tolerance, bool skips_windows, const CommonBundle* common) {
+                        double tolerance, bool skips_windows, const CommonBundle* common,
+                        Cancellation* stop) {
     field_ = &field;
     skips_windows_ = skips_windows;
+    stop_ = stop;
     stretches_ = stretches_ended_ = 0;
     origin_ = bundle.origin;
     span_ = Interval<double>::empty_set();
@@ -256,6 +258,7 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
     }
     const double slack = static_cast<double>(here.size() + 4) * u * (peaks.magnitude + threshold_);
     ++stretches_;
+    if (stop_ != nullptr && stop_->after(parent.size())) left_ = 0;
     if (skips_windows_ && peaks.above + here.rest_above + slack < threshold_) {
         ++stretches_ended_;
         return false;

@@ -38,6 +38,7 @@
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/interval/interval.h"
+#include "core/math/cancellation.h"
 #include "core/math/vec3.h"
 
 namespace ivory {
@@ -152,10 +153,12 @@ class BundleField {
     // `list` has to be valid on the bundle; `tolerance` decides how small an element has to be to
     // be left out; unless it `skips_windows`, none ends by the sum of peaks. Long stretches are
     // bounded for the `common` bundle, unless that is null, much wider than elements are or very
-    // long, or elements are few. False: numbers beyond what the bounds are proved for; nothing else
+    // long, or elements are few. Once `stop`, unless null, is seen, no more stretches are bounded, as
+    // if the budget were spent. False: numbers beyond what the bounds are proved for; nothing else
     // may be called.
     bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
-               bool skips_windows = true, const CommonBundle* common = nullptr);
+               bool skips_windows = true, const CommonBundle* common = nullptr,
+               Cancellation* stop = nullptr);
 
     // The t outside of which every ray is outside of the field's box, and so f < 0; empty: a miss.
     [[nodiscard]] Interval<double> span() const { return span_; }
@@ -384,6 +387,7 @@ class BundleField {
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double fine_cut_ = 0, refined_cut_ = 0;
     int left_ = 0;  // of the budget
+    Cancellation* stop_ = nullptr;
     bool skips_windows_ = true;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;
 };

@@ -10,7 +10,6 @@
 #include <mutex>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -140,7 +139,7 @@ class FrameJob::Work {
         }
     }
 
-    void cancel() noexcept { stop_.request_stop(); }
+    void cancel() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
     bool finished() const {
         const std::lock_guard lock(mutex_);
@@ -240,7 +239,7 @@ class FrameJob::Work {
         return regions().at(rect.x0, rect.y0);
     }
 
-    bool stopped() const { return stop_.stop_requested(); }
+    bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 
     // Until there is nothing left to do, or for at least one step that time has come. Whether this
     // worker has left.
@@ -262,7 +261,7 @@ class FrameJob::Work {
         } catch (...) {
             const std::lock_guard lock(mutex_);
             if (!failure_) failure_ = std::current_exception();
-            stop_.request_stop();
+            cancel();
         }
         leave();
         return true;
@@ -270,6 +269,7 @@ class FrameJob::Work {
 
     void prepare(Tally& tally) const {
         if (settings_.task != Task::shade) tally.reached.resize(picture_.field->size());
+        tally.counts.stop = Cancellation(stop_);
         tally.traced = std::make_unique<TracedTile>();
         tally.traced->surfaces.wants_elements = !canvas_.looks.empty();
     }
@@ -410,6 +410,7 @@ class FrameJob::Work {
     // `painted`: where it is empty it has its colour already.
     bool take_tile(std::size_t index, std::size_t block, std::size_t pass, int square, bool painted,
                    Tally& tally) {
+        if (stopped()) return false;
         TileState& tile = canvas_.tiles[index];
         const bool first = tile_begun_[index] == 0;
         const bool last = pass + 1 == strides_.size();
@@ -491,7 +492,7 @@ class FrameJob::Work {
         bool any = false;
         for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
             again[k] = infinity<double>;
-            if (isolations.status[k] != Status::unresolved) continue;
+            if (isolations.status[k] != Status::unresolved || stopped()) continue;
             ++tally.counts.skipping.rays_alone;
             isolations.set(k, picture_.method->isolate(field, all_, traced.rays.ray(k),
                                                        picture_.options, tally.counts));
@@ -500,7 +501,7 @@ class FrameJob::Work {
             again[k] = midpoint(isolations[k].t);
             any = true;
         }
-        if (any) find_surface(traced, tile.list, again);
+        if (any) find_surface(traced, tile.list, again, tally.counts.stop);
         if (stopped()) return false;
         const Clock::time_point traced_at = Clock::now();
         paint(traced);
@@ -582,9 +583,9 @@ class FrameJob::Work {
 
     // The surface at those m that are finite; the others keep theirs.
     void find_surface(TracedTile& traced, const ElementList& list,
-                      const std::array<double, pixels_in_tile>& m) const {
+                      const std::array<double, pixels_in_tile>& m, Cancellation& stop) const {
         picture_.method->surface_bundle(*picture_.field, list, traced.rays, picture_.options,
-                                        {m.data(), traced.size()}, traced.surfaces);
+                                        {m.data(), traced.size()}, traced.surfaces, stop);
     }
 
     // The colours of the surface in the light.
@@ -707,7 +708,7 @@ class FrameJob::Work {
                 paint_looks(index, *tally.traced);
             } else {
                 if (!looks_hold && !share(index, tally)) return false;
-                look_again(index, looks_hold, *tally.traced);
+                if (!look_again(index, looks_hold, tally)) return false;
             }
         }
         tally.shading += Clock::now() - start;
@@ -743,8 +744,10 @@ class FrameJob::Work {
         }
     }
 
-    // The surface and its colours at the t that stand in the frame, unless they are known.
-    void look_again(std::size_t index, bool looks_hold, TracedTile& traced) {
+    // The surface and its colours at the t that stand in the frame, unless they are known. False:
+    // cancelled on the way.
+    bool look_again(std::size_t index, bool looks_hold, Tally& tally) {
+        TracedTile& traced = *tally.traced;
         Frame& frame = canvas_.frame;
         TileState& tile = canvas_.tiles[index];
         Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
@@ -760,7 +763,8 @@ class FrameJob::Work {
             if (looks_hold) traced.surfaces.take<count>(k, *looks, traced.place[k]);
         });
         if (!looks_hold) {
-            find_surface(traced, tile.list, m);
+            find_surface(traced, tile.list, m, tally.counts.stop);
+            if (stopped()) return false;
             tile.looked_at = traced.surfaces.elements;
         }
         paint(traced);
@@ -775,6 +779,7 @@ class FrameJob::Work {
                 frame.surface[p + i] = traced.surfaces.points[k + i];
             }
         });
+        return true;
     }
 
     const Picture picture_;
@@ -794,7 +799,7 @@ class FrameJob::Work {
     std::vector<std::uint8_t> tile_begun_;  // by this job; whoever is at the tile's block uses it
     std::vector<std::atomic<int>> passes_done_;  // by block
 
-    std::stop_source stop_;
+    std::atomic<bool> stop_{false};
     std::atomic<bool> cut_short_{false};
     Clock::time_point started_, finished_;
 

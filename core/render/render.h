@@ -79,7 +79,8 @@ class FrameJob {
     FrameJob(const FrameJob&) = delete;
     FrameJob& operator=(const FrameJob&) = delete;
 
-    // Returns at once, from any thread; the workers end after at most one tile more each.
+    // Returns at once, from any thread; the workers end within the tiles that they are at, of which
+    // nothing is written then.
     void cancel() noexcept;
 
     // Whether all workers have ended. Never waits.

@@ -98,10 +98,14 @@ class Walk {
   private:
     enum class Close : unsigned char { found, none_near, doubtful };
 
-    Enclosure over(double end) {
+    // One evaluation. Who is to stop has none left.
+    void count() {
         --left_;
-        ++counts_.evaluations;
-        counts_.element_evaluations += field_.size();
+        if (counts_.add(1, field_.size())) left_ = 0;
+    }
+
+    Enclosure over(double end) {
+        count();
         Enclosure e = field_.over(t_, end);
         if (inside_) {
             e = {-e.left, -e.right, -e.value, -e.left_slope, -e.slope, -e.curvature};
@@ -114,9 +118,7 @@ class Walk {
         if (t >= span_.hi) {
             return oriented({-infinity<double>, -smallest<double>}, inside_);
         }
-        --left_;
-        ++counts_.evaluations;
-        counts_.element_evaluations += field_.size();
+        count();
         return oriented(field_.at(std::max(t, span_.lo)), inside_);
     }
 

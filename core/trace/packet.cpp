@@ -84,7 +84,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                                   Counts& counts) {
     if (surfaces != nullptr) surfaces->clear(rays.count);
     if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
-                             settings.skipping.windows, rays.common)) {
+                             settings.skipping.windows, rays.common, &counts.stop)) {
         for (std::size_t k = 0; k < rays.count; ++k) {
             isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
         }
@@ -124,7 +124,9 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                              std::int32_t{Lanes::walking}, std::int32_t{Lanes::doubtful});
             }
             const Walked walked =
-                steps.walk(window, T, unit, settings.greatest_cell, part.first, part.end, lanes_);
+                steps.walk(window, T, unit, settings.greatest_cell, part.first, part.end, lanes_,
+                           counts.stop);
+            if (counts.stop.requested()) return false;
             counts.evaluations += walked.steps;
             counts.element_evaluations +=
                 walked.steps * window.strong.size + walked.close_steps * window.weak.size;
@@ -137,7 +139,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                                            Lanes::State otherwise) {
                 const std::uint64_t evaluations =
                     steps.enclose(in, T, unit, settings.greatest_cell, left_out, first, end, pinned,
-                                  otherwise, lanes_);
+                                  otherwise, lanes_, counts.stop);
                 counts.evaluations += evaluations;
                 counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
             };
@@ -159,6 +161,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 const double left_out_by_both = std::max(left_out(window), left_out(finer));
                 for (std::size_t k = part.first; k < part.end; ++k) {
                     if (lanes_.state[k] != Lanes::hidden) continue;
+                    if (counts.stop.requested()) return false;
                     // And what rounding leaves open, by the ray itself.
                     const Interval<double> bracket{lanes_.t_lo[k], lanes_.t_hi[k]};
                     const double t = midpoint(bracket);
@@ -178,7 +181,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                                std::int32_t{Lanes::doubtful}));
                 const Window& refined = bundle_field_.refined();
                 const std::uint64_t again =
-                    steps.walk_again(refined, T, part.first, part.end, lanes_);
+                    steps.walk_again(refined, T, part.first, part.end, lanes_, counts.stop);
                 counts.evaluations += again;
                 counts.element_evaluations += again * refined.fine.size;
                 enclose(refined, 0, Lanes::undecided, Lanes::undecided);
@@ -190,19 +193,28 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
         });
     counts.skipping.stretches += bundle_field_.stretches();
     counts.skipping.stretches_ended += bundle_field_.stretches_ended();
+    if (counts.stop.requested()) {
+        for (std::size_t k = 0; k < rays.count; ++k) {
+            isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
+        }
+        return 0;
+    }
     steps.conclude(lanes_, isolations);
     return found;
 }
 
 void PacketTracer::surface(const Field& field, const ElementList& list, const RayBundle& rays,
-                           double tolerance, std::span<const double> m, BundleSurfaces& surfaces) {
+                           double tolerance, std::span<const double> m, BundleSurfaces& surfaces,
+                           Cancellation& stop) {
     const double limit = exact_limit(field, rays.bundle);
     for (std::size_t k = 0; k < rays.count; ++k) {
         if (!std::isfinite(m[k])) continue;
         surfaces.nx[k] = std::numeric_limits<float>::quiet_NaN();
         if (surfaces.exact) surfaces.points[k].normal.x = nan;
     }
-    if (!bundle_field_.build(field, list, rays.bundle, tolerance, true, rays.common)) return;
+    if (!bundle_field_.build(field, list, rays.bundle, tolerance, true, rays.common, &stop)) {
+        return;
+    }
     take(rays, true);
     for (std::size_t k = 0; k < rays.count; ++k) {
         lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
@@ -217,7 +229,8 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         std::numeric_limits<int>::max(),
         [&](Window& window, const BundlePart& part) {
             surface_in(window, part, field, limit, surfaces);
-            return true;
+            const std::size_t size = std::max(window.strong.size + window.weak.size, window.fine.size);
+            return !stop.after((part.end - part.first) * size);
         });
 }
 

@@ -33,7 +33,7 @@ class PacketTracer {
     };
 
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
-    // on [0, t.lo), and where t.hi is finite the first root lies before it. `list` has to be valid
+    // on [0, t.lo), and where t.hi is finite the first root lies before it. After a stop all are. `list` has to be valid
     // on the bundle. Unless `surfaces` is null it gets what `surface` would give for the hits'
     // midpoints; returns of how many it has found it.
     std::size_t isolate(const Field& field, const ElementList& list, const RayBundle& rays,
@@ -43,7 +43,8 @@ class PacketTracer {
     // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
     // `found` then have to be found by other means.
     void surface(const Field& field, const ElementList& list, const RayBundle& rays,
-                 double tolerance, std::span<const double> m, BundleSurfaces& surfaces);
+                 double tolerance, std::span<const double> m, BundleSurfaces& surfaces,
+                 Cancellation& stop);
 
   private:
     void take(const RayBundle& rays, bool in_parts);

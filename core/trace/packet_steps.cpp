@@ -282,7 +282,7 @@ constexpr int most_steps = 48;
 
 template <class Tag>
 Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
-                  std::size_t begin_lane, std::size_t end_lane, Lanes& lanes) {
+                  std::size_t begin_lane, std::size_t end_lane, Lanes& lanes, Cancellation& stop) {
     using Real = hn::TFromD<Tag>;
     using S = Stage<Real>;
     constexpr Real tight = S::tight;
@@ -319,6 +319,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
         for (int step = 0; step < most_steps; ++step) {
             const M<Tag> active = hn::Or(walking, guessing);
             walked.steps += hn::CountTrue(d, active);
+            if (stop.after(N * stage.entries().size)) return walked;
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
@@ -464,13 +465,13 @@ double settled_share(const Window& window, double cell) {
 }
 
 Walked walk(const Window& window, double threshold, double unit, double cell, std::size_t first,
-            std::size_t end, Lanes& lanes) {
+            std::size_t end, Lanes& lanes, Cancellation& stop) {
     const Stage<float> stage{window, unit, settled_share(window, cell)};
-    return walk_stage(F(), stage, threshold, first, end, lanes);
+    return walk_stage(F(), stage, threshold, first, end, lanes, stop);
 }
 
 std::uint64_t walk_again(const Window& window, double threshold, std::size_t first, std::size_t end,
-                         Lanes& lanes) {
+                         Lanes& lanes, Cancellation& stop) {
     // `faint` entries are not walked along.
     if (!window.fine_usable || window.faint.size > 0) {
         for (std::size_t k = first; k < end; ++k) {
@@ -481,7 +482,7 @@ std::uint64_t walk_again(const Window& window, double threshold, std::size_t fir
         }
         return 0;
     }
-    return walk_stage(D(), Stage<double>{window}, threshold, first, end, lanes).steps;
+    return walk_stage(D(), Stage<double>{window}, threshold, first, end, lanes, stop).steps;
 }
 
 constexpr std::size_t widest = 8;  // doubles in a vector of any target
@@ -807,7 +808,7 @@ std::uint64_t enclose_batch(const Enclosing& task, const Outcome& outcome, Batch
 
 std::uint64_t enclose(const Window& window, double threshold, double unit, double half_width,
                       double left_out, std::size_t first, std::size_t end, Lanes::State pinned,
-                      Lanes::State otherwise, Lanes& lanes) {
+                      Lanes::State otherwise, Lanes& lanes, Cancellation& stop) {
     if (!window.fine_usable) {
         for (std::size_t k = first; k < end; ++k) {
             if (lanes.state[k] != Lanes::candidate) continue;
@@ -831,6 +832,7 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
         const M<F> candidates = lanes_in(narrow, Lanes::candidate, lanes, k, end);
         const std::size_t count = hn::CountTrue(narrow, candidates);
         if (count == 0) continue;
+        if (stop.after(step * (window.fine.size + window.faint.size))) return steps;
         if (2 * count <= step) {
             std::uint64_t bits = bits_of(narrow, candidates);
             for (; bits != 0; bits &= bits - 1) {

@@ -10,6 +10,7 @@
 #include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/interval/interval.h"
+#include "core/math/cancellation.h"
 #include "core/math/vec3.h"
 #include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
@@ -52,6 +53,8 @@ struct Walked {
     std::uint64_t steps = 0, close_steps = 0;
 };
 
+// Whoever is given a stop leaves the lanes as they are once it is seen: their states then say
+// nothing.
 struct PacketSteps {
     // `count`, dx, dy, dz stand; fills fx, fy, fz. State: walking.
     void (*prepare)(Lanes& lanes);
@@ -63,12 +66,12 @@ struct PacketSteps {
     // float: lanes that come to a root become candidates, so close to it that `enclose` on cells of
     // that length hardly ever needs a second step; those that float cannot decide become doubtful.
     Walked (*walk)(const Window& window, double threshold, double unit, double cell,
-                   std::size_t first, std::size_t end, Lanes& lanes);
+                   std::size_t first, std::size_t end, Lanes& lanes, Cancellation& stop);
 
     // The same in double, from the window's begin, for the doubtful ones: they become candidates,
     // walk on or are undecided. The window has no faint entries. Counts pairs of a lane and a step.
     std::uint64_t (*walk_again)(const Window& window, double threshold, std::size_t first,
-                                std::size_t end, Lanes& lanes);
+                                std::size_t end, Lanes& lanes, Cancellation& stop);
 
     // Encloses the candidates' roots, of lanes first .. end, in double, on the grid whose cell is
     // the greatest power of two below `half_width` / |d| in the units of core/trace/isolate.h: they
@@ -78,7 +81,8 @@ struct PacketSteps {
     // that either of these two leaves out.
     std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
                              double left_out, std::size_t first, std::size_t end,
-                             Lanes::State pinned, Lanes::State otherwise, Lanes& lanes);
+                             Lanes::State pinned, Lanes::State otherwise, Lanes& lanes,
+                             Cancellation& stop);
 
     // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,
     // in float: within 2^-8, or nx = NaN where float might lose more.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/interval/interval.h"
+#include "core/math/cancellation.h"
 #include "core/math/vec3.h"
 #include "core/trace/skipping.h"
 
@@ -45,11 +46,19 @@ struct Answer {
     SurfacePoint surface;
 };
 
-// Work done, for statistics. Added up per thread.
+// Work done, for statistics, and whether to go on. Added up per thread.
 struct Counts {
     std::uint64_t evaluations = 0;          // pairs of a ray and an interval that were enclosed
     std::uint64_t element_evaluations = 0;  // elements enclosed in them
     SkippingCounts skipping = {};
+    Cancellation stop = {};  // each thread keeps its own
+
+    // So many enclosures, of so many elements each. Whether to stop.
+    bool add(std::uint64_t count, std::uint64_t elements) {
+        evaluations += count;
+        element_evaluations += count * elements;
+        return stop.after(count * elements);
+    }
 
     Counts& operator+=(const Counts& other) {
         evaluations += other.evaluations;

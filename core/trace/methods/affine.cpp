@@ -41,11 +41,12 @@ Isolation AffineBisection::isolate(const Field& field, const ElementList& list, 
     Isolation result = search.answer;
     while (depth > 0) {
         Interval<double> t = waiting[--depth];
-        if (evaluations == evaluation_budget) {
+        if (evaluations == evaluation_budget || counts.stop.requested()) {
             result = search.result(Status::unresolved, {t.lo, search.span.hi});
             break;
         }
         ++evaluations;
+        counts.add(1, list.elements.size());
         const natural::Affine place = natural::affine_over(t);
         const natural::Affine f = natural::extension(along, place);
         const Interval<double> range = natural::range(f);
@@ -65,8 +66,6 @@ Isolation AffineBisection::isolate(const Field& field, const ElementList& list, 
             waiting[depth++] = {t.lo, middle};
         }
     }
-    counts.evaluations += evaluations;
-    counts.element_evaluations += evaluations * list.elements.size();
     return result;
 }
 

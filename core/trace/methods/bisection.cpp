@@ -57,7 +57,8 @@ Isolation Bisection::isolate(const Field& field, const ElementList& list, const 
     Isolation result = search.answer;
     while (depth > 0) {
         const Interval<double> t = waiting[--depth];
-        if (++evaluations > evaluation_budget) {
+        ++evaluations;
+        if (counts.add(1, list.elements.size()) || evaluations > evaluation_budget) {
             result = search.result(Status::unresolved, {t.lo, search.span.hi});
             break;
         }
@@ -71,8 +72,6 @@ Isolation Bisection::isolate(const Field& field, const ElementList& list, const 
         waiting[depth++] = {middle, t.hi};
         waiting[depth++] = {t.lo, middle};
     }
-    counts.evaluations += evaluations;
-    counts.element_evaluations += evaluations * list.elements.size();
     return result;
 }
 

@@ -20,6 +20,7 @@ Isolation Marching::isolate(const Field& field, const ElementList& list, const R
     std::uint64_t evaluations = 0;
     const auto at = [&](double t) {
         ++evaluations;
+        counts.add(1, list.elements.size());
         return natural::extension(along, natural::Plain{t}).x;
     };
     const auto answer = [&]() -> Isolation {
@@ -27,7 +28,7 @@ Isolation Marching::isolate(const Field& field, const ElementList& list, const R
         double before = search.span.lo;
         const bool inside = at(before) > 0;
         for (double n = 1; before < search.span.hi; ++n) {
-            if (evaluations >= evaluation_budget) {
+            if (evaluations >= evaluation_budget || counts.stop.requested()) {
                 return search.result(Status::unresolved, search.span);
             }
             double after = search.span.lo + n * stride;
@@ -37,17 +38,15 @@ Isolation Marching::isolate(const Field& field, const ElementList& list, const R
             }
             while (after - before > search.tolerance) {
                 const double middle = 0.5 * (before + after);
-                if (middle <= before || middle >= after) break;
+                if (middle <= before || middle >= after || counts.stop.requested()) break;
                 ((at(middle) > 0) == inside ? before : after) = middle;
             }
+            if (counts.stop.requested()) return search.result(Status::unresolved, search.span);
             return search.result(Status::claimed_hit, {before, after});
         }
         return {Status::claimed_miss, Interval<double>::empty_set()};
     };
-    const Isolation result = answer();
-    counts.evaluations += evaluations;
-    counts.element_evaluations += evaluations * list.elements.size();
-    return result;
+    return answer();
 }
 
 }  // namespace ivory

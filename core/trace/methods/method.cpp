@@ -29,22 +29,29 @@ void Method::trace_bundle(const Field& field, const ElementList& list, const Ray
     }
     if (surfaces != nullptr) surfaces->clear(rays.size());
     for (std::size_t k = 0; k < rays.size(); ++k) {
+        if (counts.stop.requested()) {
+            isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
+            continue;
+        }
         const Isolation isolation = isolate(field, list, rays.ray(k), options, counts);
         isolations.set(k, isolation);
         if (surfaces == nullptr || !possibly_hit(isolation.status)) continue;
         surfaces->set(k, surface(field, list, rays.ray(k), midpoint(isolation.t), options));
+        counts.stop.after(list.elements.size());
     }
 }
 
 void Method::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
-                            BundleSurfaces& surfaces) const {
+                            BundleSurfaces& surfaces, Cancellation& stop) const {
     if (!list.clusters.empty()) {
         return Method::surface_bundle(field, elements_for(rays, field, list), rays, options, m,
-                                      surfaces);
+                                      surfaces, stop);
     }
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-        if (std::isfinite(m[k])) surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
+    for (std::size_t k = 0; k < rays.size() && !stop.requested(); ++k) {
+        if (!std::isfinite(m[k])) continue;
+        surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
+        stop.after(list.elements.size());
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/field/field.h"
 #include "core/field/support.h"
+#include "core/math/cancellation.h"
 #include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
 #include "core/trace/ray.h"
@@ -48,10 +49,11 @@ class Method {
                               const MethodOptions& options, BundleIsolations& isolations,
                               BundleSurfaces* surfaces, Counts& counts) const;
 
-    // Normal and colour of each ray at its m; where that is not finite, they stay.
+    // Normal and colour of each ray at its m; where that is not finite, they stay. Those that come
+    // after a stop stay too.
     virtual void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                                 const MethodOptions& options, std::span<const double> m,
-                                BundleSurfaces& surfaces) const;
+                                BundleSurfaces& surfaces, Cancellation& stop) const;
 
   protected:
     Method() = default;

@@ -23,14 +23,15 @@ bool excludes_zero(const Span& x) { return x.lo > 0 || x.hi < 0; }
 // a root x = m - (g(m) + r(x)) / g'(xi) lies in m - f(m) / f'([t]), likewise.
 class Descent {
   public:
-    Descent(const natural::RayField& field, const Search& search)
-        : field_(field), search_(search) {}
+    Descent(const natural::RayField& field, const Search& search, std::size_t elements,
+            Counts& counts)
+        : field_(field), search_(search), elements_(elements), counts_(counts) {}
 
     Isolation run() {
         waiting_[depth_++] = search_.span;
         while (depth_ > 0) {
             const Span t = waiting_[--depth_];
-            if (evaluations >= evaluation_budget) {
+            if (is_over()) {
                 return search_.result(Status::unresolved, {t.lo, search_.span.hi});
             }
             if (look_at(t)) return result_;
@@ -38,15 +39,20 @@ class Descent {
         return search_.answer;
     }
 
-    std::uint64_t evaluations = 0;
-
   private:
+    [[nodiscard]] bool is_over() const {
+        return evaluations_ >= evaluation_budget || counts_.stop.requested();
+    }
+    void count() {
+        ++evaluations_;
+        counts_.add(1, elements_);
+    }
     Dual over(const Span& t) {
-        ++evaluations;
+        count();
         return natural::extension(field_, Dual{t, Span(1.0)});
     }
     Span at(double t) {
-        ++evaluations;
+        count();
         return natural::extension(field_, natural::Range{Span(t)}).x;
     }
 
@@ -83,7 +89,7 @@ class Descent {
         while (width(t) > 0.5 * search_.tolerance) {
             const double middle = midpoint(t);
             if (middle <= t.lo || middle >= t.hi) break;
-            if (evaluations >= evaluation_budget) {
+            if (is_over()) {
                 return found(Status::unresolved, {t.lo, search_.span.hi});
             }
             const Span f = at(middle);
@@ -109,6 +115,9 @@ class Descent {
 
     const natural::RayField& field_;
     const Search& search_;
+    const std::size_t elements_;
+    Counts& counts_;
+    std::uint64_t evaluations_ = 0;
     std::array<Span, 2200> waiting_;
     std::size_t depth_ = 0;
     Isolation result_{};
@@ -122,11 +131,7 @@ Isolation IntervalNewton::isolate(const Field& field, const ElementList& list, c
     if (search.over()) return search.answer;
     thread_local natural::RayField along;
     along.build(field, list, ray, search.ray);
-    Descent descent(along, search);
-    const Isolation result = descent.run();
-    counts.evaluations += descent.evaluations;
-    counts.element_evaluations += descent.evaluations * list.elements.size();
-    return result;
+    return Descent(along, search, list.elements.size(), counts).run();
 }
 
 }  // namespace ivory

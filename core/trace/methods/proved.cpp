@@ -71,8 +71,7 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
     // 2. The field along it. A miss already where the peaks do not add up to T.
     thread_local FieldAlongRay along;
     along.build(field, list, scaled_ray.origin, scaled_ray.direction, span);
-    ++counts.evaluations;
-    counts.element_evaluations += list.elements.size();
+    counts.add(1, list.elements.size());
     if (along.certainly_outside()) return {search.answer};
 
     // 3. The first root.
@@ -124,8 +123,7 @@ Isolation settled(const Interval<double>& bracket, const Field& field, const Ele
     double after = before + cell;                       // the line in question
     for (; after < hi; after += cell) {
         const Enclosure e = along.over(lo, after);
-        ++counts.evaluations;
-        counts.element_evaluations += along.size();
+        counts.add(1, along.size());
         if (e.right.lo > 0) break;
         if (e.right.hi < 0 && e.slope.lo > 0) before = after;
     }
@@ -189,7 +187,7 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
     bool left = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {
         m[k] = infinity<double>;
-        if (isolations.status[k] == Status::unresolved) {
+        if (isolations.status[k] == Status::unresolved && !counts.stop.requested()) {
             ++counts.skipping.rays_alone;
             if (for_one == nullptr) {
                 elements = elements_for(rays, field, list);
@@ -204,14 +202,15 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
         m[k] = midpoint(isolations[k].t);
         left = true;
     }
-    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces);
+    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces,
+                              counts.stop);
 }
 
 void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
-                            BundleSurfaces& surfaces) const {
+                            BundleSurfaces& surfaces, Cancellation& stop) const {
     thread_local PacketTracer packets;
-    packets.surface(field, list, rays, options.tolerance, m, surfaces);
+    packets.surface(field, list, rays, options.tolerance, m, surfaces, stop);
     // What the packets leave to one ray at a time.
     std::array<double, RayBundle::capacity> left;
     bool any = false;
@@ -221,7 +220,8 @@ void Proved::surface_bundle(const Field& field, const ElementList& list, const R
         any = any || is_left;
     }
     if (any) {
-        Method::surface_bundle(field, list, rays, options, {left.data(), rays.size()}, surfaces);
+        Method::surface_bundle(field, list, rays, options, {left.data(), rays.size()}, surfaces,
+                               stop);
     }
 }
 

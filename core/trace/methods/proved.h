@@ -21,7 +21,7 @@ class Proved final : public Method {
                       BundleSurfaces* surfaces, Counts& counts) const override;
     void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                         const MethodOptions& options, std::span<const double> m,
-                        BundleSurfaces& surfaces) const override;
+                        BundleSurfaces& surfaces, Cancellation& stop) const override;
 };
 
 }  // namespace ivory

@@ -26,11 +26,12 @@ Isolation SegmentTracing::isolate(const Field& field, const ElementList& list, c
     int evaluations = 0;
     Isolation result = search.answer;
     while (t < end) {
-        if (evaluations == evaluation_budget) {
+        if (evaluations == evaluation_budget || counts.stop.requested()) {
             result = search.result(Status::unresolved, {t, end});
             break;
         }
         ++evaluations;
+        counts.add(1, along.size());
         const double ahead = std::min(end, std::max(t + segment, next_up(t)));
         const Enclosure f = along.over(t, ahead);
         const double clear = std::max(std::max(-f.left.hi, f.left.lo), 0.0);
@@ -54,8 +55,6 @@ Isolation SegmentTracing::isolate(const Field& field, const ElementList& list, c
         segment = growth * (next - t);
         t = next;
     }
-    counts.evaluations += static_cast<std::uint64_t>(evaluations);
-    counts.element_evaluations += static_cast<std::uint64_t>(evaluations) * along.size();
     return result;
 }
 

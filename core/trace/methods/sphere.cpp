@@ -29,11 +29,12 @@ Isolation SphereTracing::isolate(const Field& field, const ElementList& list, co
     // f(t) = g(t) + r(t), r within the rest that is part of every enclosure and g with that
     // constant: beyond t, f <= (upper end of f(t)) + L (t' - t), and likewise from below.
     while (t < end) {
-        if (evaluations == evaluation_budget) {
+        if (evaluations == evaluation_budget || counts.stop.requested()) {
             result = search.result(Status::unresolved, {t, end});
             break;
         }
         ++evaluations;
+        counts.add(1, along.size());
         const Interval<double> f = along.at(t);
         const double clear = std::max(std::max(-f.hi, f.lo), 0.0);
         const double step = clear / steepest * (1 - 8 * unit_roundoff);
@@ -53,8 +54,6 @@ Isolation SphereTracing::isolate(const Field& field, const ElementList& list, co
         }
         t = next;
     }
-    counts.evaluations += static_cast<std::uint64_t>(evaluations);
-    counts.element_evaluations += static_cast<std::uint64_t>(evaluations) * along.size();
     return result;
 }
 

@@ -326,7 +326,8 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     window.strong.count[0] = 1;
     window.strong.size = 1;
     window.coarse_usable = true;
-    packet_steps().walk(window, 1, 1, 1e-6, 0, 1, *lanes);
+    Cancellation stop;
+    packet_steps().walk(window, 1, 1, 1e-6, 0, 1, *lanes, stop);
     EXPECT_EQ(lanes->state[0], Lanes::doubtful);
 }
 
@@ -359,13 +360,15 @@ TEST(Packet, GuessesAreAsCloseAsTheCellsAsk) {
             along.for_windows(parts, {}, every, 1000, [&](Window& window, const BundlePart& all) {
                 if (!window.coarse_usable) return false;
                 const double length = cell * field.least_width;
-                packet_steps().walk(window, T, unit, length, 0, all.end, *lanes);
+                Cancellation stop;
+                packet_steps().walk(window, T, unit, length, 0, all.end, *lanes, stop);
                 candidates += static_cast<std::uint64_t>(
                     std::count(lanes->state.begin(), lanes->state.begin() + all.end,
                                std::int32_t{Lanes::candidate}));
                 along.complete(window);
                 steps += packet_steps().enclose(window, T, unit, length, 0, 0, all.end,
-                                                Lanes::undecided, Lanes::undecided, *lanes);
+                                                Lanes::undecided, Lanes::undecided, *lanes,
+                                                stop);
                 return true;
             });
         }
