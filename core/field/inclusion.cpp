@@ -215,6 +215,7 @@ class Sum {
 void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec3d& origin,
                           const Vec3d& direction, const Interval<double>& span) {
     elements_.clear();
+    magnitude_ = 0;
     // All of f in units of a power of two near T: exact, but for strengths that overflow, which
     // then bound nothing, and what underflows beside T, which Sum's absolute term covers.
     threshold_ = std::frexp(field.threshold, &exponent_);
@@ -243,6 +244,7 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
             elements_.pop_back();
             continue;
         }
+        magnitude_ += std::abs(element.strength) * element.peak;
         if (element.strength > 0) peaks.add(element.strength, {0.0, element.peak});
     }
     rest_ = rest.finish(list.elements.size() + 1);

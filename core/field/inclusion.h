@@ -47,6 +47,10 @@ class FieldAlongRay {
     // f in scene units is 2^exponent() times what is enclosed here.
     [[nodiscard]] int exponent() const { return exponent_; }
 
+    // T and the sum of the elements' peaks of |F|, in units of 2^exponent().
+    [[nodiscard]] double threshold() const { return threshold_; }
+    [[nodiscard]] double magnitude() const { return magnitude_; }
+
     // Elements that take part in an evaluation.
     [[nodiscard]] std::size_t size() const { return elements_.size(); }
 
@@ -56,6 +60,7 @@ class FieldAlongRay {
     double threshold_ = 0;             // T / 2^exponent_
     int exponent_ = 0;
     double peaks_ = 0;  // upper bound of f over the span
+    double magnitude_ = 0;
 };
 
 }  // namespace ivory

@@ -42,7 +42,14 @@ class Walk {
   public:
     Walk(const FieldAlongRay& field, const Interval<double>& span, const Precision& precision,
          int budget, Counts& counts)
-        : field_(field), span_(span), precision_(precision), left_(budget), counts_(counts) {}
+        : field_(field),
+          span_(span),
+          precision_(precision),
+          cancels_(!(field.magnitude() < most_magnitude * field.threshold())),
+          hides_(!(static_cast<double>(field.size()) * field.magnitude() * u <
+                   least_hidden * field.threshold())),
+          left_(cancels_ ? std::min(budget, budget_of_cancelling) : budget),
+          counts_(counts) {}
 
     Isolation run(Start start) {
         t_ = span_.lo;
@@ -50,6 +57,11 @@ class Walk {
         double window = span_.hi - t_;
         while (!(t_ >= span_.hi)) {
             if (left_ <= 0) return unresolved(span_.hi);
+            if (hides_ && --steps_until_looking_ahead_ == 0) {
+                if (!pass_hidden()) return unresolved(span_.hi);
+                window = span_.hi - t_;
+                continue;
+            }
             const double end = std::min(std::max(t_ + window, next_up(t_)), span_.hi);
             const Enclosure e = over(end);
             if (e.value.hi < 0) {
@@ -122,6 +134,50 @@ class Walk {
         return oriented(field_.at(std::max(t, span_.lo)), inside_);
     }
 
+    // Where elements cancel that are 2^50 times as strong as T, rounding hides f far and wide, and
+    // steps shrink long before, since windows enclose each element by itself. So after a few steps
+    // the signs further on are looked at: where a hidden stretch lies ahead with no other side of 0
+    // between, and the old sign after it, all from here to there is in doubt, as it would be when
+    // the walk had come to the stretch. False: rounding hides the sign up to the end of the span.
+    bool pass_hidden() {
+        constexpr int halvings = 12, closer = 8;
+        double sure = t_, hidden = infinity<double>;
+        for (double ahead = std::ldexp(span_.hi - t_, -halvings); left_ > 0; ahead *= 2) {
+            const double t = t_ + ahead;
+            if (!(t < span_.hi)) return true;
+            const Interval<double> f = at(t);
+            if (f.lo > 0) return true;
+            if (!(f.hi < 0)) {
+                hidden = t;
+                break;
+            }
+            sure = t;
+        }
+        for (int i = 0; i < closer && left_ > 0; ++i) {
+            const double middle = 0.5 * (sure + hidden);
+            const Interval<double> f = at(middle);
+            if (f.lo > 0) return true;
+            (f.hi < 0 ? sure : hidden) = middle;
+        }
+        for (double ahead = hidden - t_; left_ > 0 && hidden + ahead < span_.hi; ahead *= 1.5) {
+            const Interval<double> f = at(hidden + ahead);
+            if (f.lo > 0) return true;
+            if (!(f.hi < 0)) continue;
+            put_in_doubt(hidden + ahead);
+            return true;
+        }
+        return inside_;
+    }
+
+    // [t_, end]. What comes after it only tells how far the first root may be: where rounding hides
+    // so much, little is spent on that.
+    void put_in_doubt(double end) {
+        constexpr int budget_after_doubt = 8;
+        doubt_ = hull(doubt_, Interval<double>(t_, end));
+        t_ = end;
+        if (hides_) left_ = std::min(left_, budget_after_doubt);
+    }
+
     // The side on which the ray starts. Where rounding hides it, the start up to the first place
     // with a certain sign is in doubt: the first root may lie there.
     bool find_side() {
@@ -188,8 +244,7 @@ class Walk {
         for (int i = 0; i < 24 && left_ > 0 && t_ + ahead > t_; ++i, ahead *= 0.5) {
             if (at(t_ + ahead).lo > 0) return found(lo, hi);
         }
-        doubt_ = hull(doubt_, Interval<double>(t_, hi));
-        t_ = hi;
+        put_in_doubt(hi);
         close_ = Close::doubtful;
         return {};
     }
@@ -197,6 +252,12 @@ class Walk {
     const FieldAlongRay& field_;
     const Interval<double> span_;
     const Precision precision_;
+    // The elements' peaks add up to so many times T that windows say little where they cancel; to
+    // so many that rounding may hide f. Ordinary fields are far from both.
+    static constexpr double most_magnitude = 0x1p20, least_hidden = 0x1p-4;
+    static constexpr int budget_of_cancelling = 1500;
+    const bool cancels_, hides_;
+    int steps_until_looking_ahead_ = 8;
     int left_;
     Counts& counts_;
     double t_ = 0;  // f has no root on [0, t_) outside of doubt_, and the sign of its side there

@@ -41,10 +41,12 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
 // Of the hits whose t lies in the window: in float, and in double where that is wanted or float
 // loses the direction. Of how many it is known now.
 std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& part,
-                                     const Field& field, double limit, BundleSurfaces& surfaces) {
+                                     const Field& field, double limit, BundleSurfaces& surfaces,
+                                     Stop& stop) {
     if (window.coarse_usable) {
         const Looked looked = packet_steps().look(window, field, bundle_field_.unit(), limit,
-                                                  lanes_, part.first, part.end, surfaces);
+                                                  lanes_, part.first, part.end, surfaces, stop);
+        if (stop.requested()) return 0;
         if (looked.wanted == 0) return 0;
         surfaces.mix(window.strong.elements());
         surfaces.mix(window.weak.elements());
@@ -68,7 +70,8 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     points_.resize(index_.size());
     const Window& refined = bundle_field_.refined();
     surfaces.mix(refined.fine.elements());
-    packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data());
+    packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data(), stop);
+    if (stop.requested()) return 0;
     for (std::size_t i = 0; i < index_.size(); ++i) {
         const std::size_t k = index_[i];
         if (!surfaces.seen(k)) surfaces.set_seen(k, points_[i]);
@@ -186,8 +189,9 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                 counts.element_evaluations += again * refined.fine.size;
                 enclose(refined, 0, Lanes::undecided, Lanes::undecided);
             }
+            if (counts.stop.requested()) return false;
             if (surfaces != nullptr) {
-                found += surface_in(window, part, field, limit, *surfaces);
+                found += surface_in(window, part, field, limit, *surfaces, counts.stop);
             }
             return any(all, Lanes::walking);
         });
@@ -228,9 +232,8 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         },
         std::numeric_limits<int>::max(),
         [&](Window& window, const BundlePart& part) {
-            surface_in(window, part, field, limit, surfaces);
-            const std::size_t size = std::max(window.strong.size + window.weak.size, window.fine.size);
-            return !stop.after((part.end - part.first) * size);
+            surface_in(window, part, field, limit, surfaces, stop);
+            return !stop.requested();
         });
 }
 

@@ -305,6 +305,8 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     const V<Tag> zero = hn::Zero(d), one_less = c(1 - tight), one_more = c(1 + tight);
     const V<Tag> least = c(least_square<Real>);
     Walked walked;
+    std::uint64_t work = N * stage.entries().size;  // of a step, at most
+    if constexpr (has_weak) work += N * stage.more_entries().size;
 
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
         M<Tag> walking = lanes_in(d, S::takes, lanes, first, end_lane);
@@ -319,7 +321,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
         for (int step = 0; step < most_steps; ++step) {
             const M<Tag> active = hn::Or(walking, guessing);
             walked.steps += hn::CountTrue(d, active);
-            if (stop.after(N * stage.entries().size)) return walked;
+            if (stop.after(work)) return walked;
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
@@ -921,10 +923,12 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
 }
 
 void surface(const Window& window, const Field& field, const Lanes& lanes,
-             std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface) {
+             std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface,
+             Stop& stop) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     for (std::size_t first = 0; first < index.size(); first += N) {
+        if (stop.after(N * window.fine.size)) return;
         alignas(64) double dx[widest], dy[widest], dz[widest], at[widest];
         for (std::size_t k = 0; k < N; ++k) {
             const std::size_t item = std::min(first + k, index.size() - 1);
@@ -997,7 +1001,7 @@ HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32
 // The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
 // they bound the errors of F and of |grad F|.
 Looked look(const Window& window, const Field& field, double unit, double limit, const Lanes& lanes,
-            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces) {
+            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces, Stop& stop) {
     const F d;
     const D wide;
     const std::size_t N = hn::Lanes(d);
@@ -1023,6 +1027,7 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
         const M<F> wanted = hn::AndNot(hn::IsNaN(tau), hits);
         if (hn::AllFalse(d, wanted)) continue;
         looked.wanted += hn::CountTrue(d, wanted);
+        if (stop.after(N * (window.strong.size + window.weak.size))) return looked;
         const V<F> t = hn::IfThenElseZero(wanted, tau);
         const RayLanes<F> rays = rays_of(d, window, unit, lanes, first);
         const Vec3v<F> p{hn::MulAdd(t, rays.direction.x, rays.middle.x),

@@ -1,0 +1,99 @@
+// How soon work ends that is to end: in evaluations, whatever they take.
+#include "core/math/stop.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/math/direction.h"
+#include "core/math/instruction_sets.h"
+#include "core/trace/trace.h"
+#include "tests/tools/random_scene.h"
+
+namespace ivory {
+namespace {
+
+constexpr std::size_t many = 20'000;
+
+// As many points at nearly one place, with T their sum: what a ray meets there is hard to tell.
+Scene crowd() {
+    Scene scene;
+    scene.threshold = many;
+    for (std::size_t i = 0; i < many; ++i) {
+        Element element;
+        element.skeleton = Point{{static_cast<double>(i) * 1e-15, 0, 0}};
+        scene.elements.push_back(element);
+    }
+    return scene;
+}
+
+const Ray through_the_crowd{{0, 0, 8}, {0.001, 0.002, -1}};
+
+TEST(Stop, IsSeenAfterSoManyEvaluations) {
+    std::atomic<bool> flag{false};
+    Stop stop(flag);
+    EXPECT_FALSE(stop.after(Stop::often));
+    flag = true;
+    EXPECT_FALSE(stop.after(Stop::often - 1));
+    EXPECT_FALSE(stop.requested());
+    EXPECT_TRUE(stop.after(1));
+    EXPECT_TRUE(stop.after(0));
+    EXPECT_TRUE(stop.requested());
+    EXPECT_FALSE(Stop().after(10 * Stop::often));
+}
+
+TEST(Stop, EndsOneRayOfEachMethod) {
+    const Field field = compile(crowd());
+    const std::atomic<bool> flag{true};
+    for (const Method* method : methods()) {
+        SCOPED_TRACE(method->name());
+        Counts counts;
+        counts.stop = Stop(flag);
+        std::size_t rays = 0;
+        while (!counts.stop.requested() && ++rays < 10'000) {
+            trace(field, all_elements(field), through_the_crowd, *method, {}, counts);
+        }
+        EXPECT_TRUE(counts.stop.requested());
+        // A few more of each element, for what a method finishes.
+        EXPECT_LE(counts.element_evaluations, Stop::often + 100 * many);
+    }
+}
+
+// What is seen while a tile is traced says nothing that is not so.
+TEST(Stop, EndsBundlesOfEachMethodOnEachInstructionSet) {
+    const Scene scene = crowd();
+    const Field field = compile(scene);
+    const std::atomic<bool> flag{true};
+    const std::string best(instruction_set());
+    auto rays = std::make_unique<RayBundle>();
+    const Vec3d axis = unit(through_the_crowd.direction);
+    for (int k = 0; k < 256; ++k) {
+        rays->add(unit(axis + Vec3d{1e-3 * (k % 16), 1e-3 * (k / 16), 0}));
+    }
+    rays->bundle = {through_the_crowd.origin, axis, 0.05};
+    for (const std::string_view set : instruction_sets()) {
+        ASSERT_TRUE(limit_instruction_set(set));
+        for (const Method* method : methods()) {
+            SCOPED_TRACE(std::string(set) + " " + std::string(method->name()));
+            Counts counts;
+            counts.stop = Stop(flag);
+            auto isolations = std::make_unique<BundleIsolations>();
+            auto surfaces = std::make_unique<BundleSurfaces>();
+            method->trace_bundle(field, all_elements(field), *rays, {}, *isolations,
+                                 surfaces.get(), counts);
+            EXPECT_TRUE(counts.stop.requested());
+            EXPECT_LE(counts.element_evaluations, Stop::often + 100 * many);
+            EXPECT_EQ(isolations->status[255], Status::unresolved);
+            EXPECT_EQ(isolations->t_lo[255], 0);
+            EXPECT_EQ(isolations->t_hi[255], std::numeric_limits<double>::infinity());
+        }
+    }
+    ASSERT_TRUE(limit_instruction_set(best));
+}
+
+}  // namespace
+}  // namespace ivory
