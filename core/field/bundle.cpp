@@ -258,7 +258,8 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
     }
     const double slack = static_cast<double>(here.size() + 4) * u * (peaks.magnitude + threshold_);
     ++stretches_;
-    if (stop_ != nullptr && stop_->after(parent.size())) left_ = 0;
+    const std::size_t each = parent.in_clusters && !parent.is_near ? cluster_size : 1;
+    if (stop_ != nullptr && stop_->after(parent.size() * each)) left_ = 0;
     if (skips_windows_ && peaks.above + here.rest_above + slack < threshold_) {
         ++stretches_ended_;
         return false;

@@ -18,7 +18,7 @@ class Cancellation {
     // `flag` has to live as long.
     explicit Cancellation(const std::atomic<bool>& flag) : flag_(&flag) {}
 
-    // After so many evaluations of one element: whether to stop.
+    // After so many evaluations of one element, or bounds of one: whether to stop.
     bool after(std::uint64_t element_evaluations) {
         since_ += element_evaluations;
         if (since_ >= often) {

@@ -46,6 +46,7 @@ ElementList near_elements(const Field& field, const ElementList& list, const Ray
                           Counts& counts) {
     if (!options.skipping.lists) return list;
     ElementList near = reaching_elements(field, list, {ray.origin, ray.direction, 0}, part);
+    counts.stop.after(list.elements.size());
     counts.skipping.list_elements += list.elements.size();
     counts.skipping.list_left_out += list.elements.size() - near.elements.size();
     return near;

@@ -273,12 +273,12 @@ TEST(Isolate, ElementsThatCancelAreSoonSeenToHideTheField) {
             Scene scene;
             scene.threshold = 1e-6;
             Element element;
-            element.skeleton = Point{{0, 0, 0}};
+            element.skeleton = PointSkeleton{{0, 0, 0}};
             for (int i = 0; i < pairs; ++i) {
                 Element minus = element;
                 element.strength = strength;
                 minus.strength = -strength;
-                if (kind == 1) minus.skeleton = Point{{0x1p-53, 0, 0}};
+                if (kind == 1) minus.skeleton = PointSkeleton{{0x1p-53, 0, 0}};
                 if (kind == 2) minus.width = std::nextafter(1.0, 2.0);
                 if (kind == 3) minus.kernel = KernelKind::wyvill;
                 scene.elements.push_back(element);
@@ -305,7 +305,9 @@ TEST(Isolate, ElementsThatCancelAreSoonSeenToHideTheField) {
                 EXPECT_LE(answer.t.lo, exact.t.hi);
                 EXPECT_GE(answer.t.hi, exact.t.lo);
             }
-            if (strength >= 1e20 && kind < 3) EXPECT_LE(all, rays * 100U);
+            if (strength >= 1e20 && kind < 3) {
+                EXPECT_LE(all, rays * 100U);
+            }
         }
     }
 }

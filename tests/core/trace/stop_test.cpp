@@ -25,7 +25,7 @@ Scene crowd() {
     scene.threshold = many;
     for (std::size_t i = 0; i < many; ++i) {
         Element element;
-        element.skeleton = Point{{static_cast<double>(i) * 1e-15, 0, 0}};
+        element.skeleton = PointSkeleton{{static_cast<double>(i) * 1e-15, 0, 0}};
         scene.elements.push_back(element);
     }
     return scene;
@@ -55,7 +55,9 @@ TEST(Stop, EndsOneRayOfEachMethod) {
         counts.stop = Stop(flag);
         std::size_t rays = 0;
         while (!counts.stop.requested() && ++rays < 10'000) {
-            trace(field, all_elements(field), through_the_crowd, *method, {}, counts);
+            const Answer answer =
+                trace(field, all_elements(field), through_the_crowd, *method, {}, counts);
+            EXPECT_NE(answer.isolation.status, Status::miss);
         }
         EXPECT_TRUE(counts.stop.requested());
         // A few more of each element, for what a method finishes.
