@@ -42,19 +42,19 @@ int main(int count, char** words) {
                    ivory::parse_arguments(count, words));
         return done;
     } catch (const ivory::Interrupted&) {
-        return ivory::interrupted_status();
+        return ivory::interrupted_status;
     } catch (const ivory::UsageError& error) {
         return complain(error.what(), wrong_usage);
     } catch (const std::bad_alloc&) {
         return complain("out of memory; take a smaller picture or scene", failed);
     } catch (const std::system_error& error) {
-        if (ivory::interrupted()) return ivory::interrupted_status();
+        if (ivory::interrupted()) return ivory::interrupted_status;
         return complain(("the system refuses: " + error.code().message() +
                          "; end other programs, or allow more memory and processes (ulimit)")
                             .c_str(),
                         failed);
     } catch (const std::exception& error) {
         // A system call that the interrupt woke may have been taken for a failure.
-        return ivory::interrupted() ? ivory::interrupted_status() : complain(error.what(), failed);
+        return ivory::interrupted() ? ivory::interrupted_status : complain(error.what(), failed);
     }
 }

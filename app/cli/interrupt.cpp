@@ -16,13 +16,14 @@ namespace {
 // What a person, a terminal, a time limit or a system that shuts down sends.
 constexpr std::array stopping{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGUSR1, SIGUSR2};
 
-std::atomic<int> number{0};  // of the signal; 0: none has come
+std::atomic<bool> flag{false};
 std::atomic<int> bell{-1};   // the end of a pipe that the signal writes to; < 0: none
-static_assert(std::atomic<int>::is_always_lock_free, "else a signal handler must not touch it");
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
+              "else a signal handler must not touch it");
 
-extern "C" void note_signal(int signal) {
+extern "C" void note_signal(int) {
     const int error = errno;
-    number.store(signal, std::memory_order_relaxed);
+    flag.store(true, std::memory_order_relaxed);
     const int pipe = bell.load(std::memory_order_relaxed);
     if (pipe >= 0) static_cast<void>(!::write(pipe, "", 1));
     errno = error;
@@ -46,15 +47,13 @@ void watch_interrupts() {
     }
 }
 
-bool interrupted() noexcept { return number.load(std::memory_order_relaxed) != 0; }
+bool interrupted() noexcept { return flag.load(std::memory_order_relaxed); }
 
 const std::atomic<bool>& interruption() noexcept { return flag; }
 
 void stop_if_interrupted() {
     if (interrupted()) throw Interrupted();
 }
-
-int interrupted_status() noexcept { return 128 + number.load(std::memory_order_relaxed); }
 
 InterruptBell::InterruptBell(std::function<void()> ring) {
     int ends[2];

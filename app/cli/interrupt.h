@@ -7,7 +7,7 @@
 
 namespace ivory {
 
-// Thrown where the wish to stop is seen. Exit status: interrupted_status().
+// Thrown where the wish to stop is seen. Exit status: interrupted_status.
 struct Interrupted {};
 
 // From now on the signals that ask a program to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU,
@@ -24,8 +24,8 @@ void watch_interrupts();
 // Throws Interrupted where the flag is up.
 void stop_if_interrupted();
 
-// 128 and the number of the signal that has raised the flag: 130 for Ctrl+C.
-[[nodiscard]] int interrupted_status() noexcept;
+// The exit status of a run that a signal has stopped, whichever.
+inline constexpr int interrupted_status = 130;
 
 // For a loop that sleeps where no signal wakes it. One at a time.
 class InterruptBell {

@@ -42,7 +42,7 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
 // loses the direction. Of how many it is known now.
 std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& part,
                                      const Field& field, double limit, BundleSurfaces& surfaces,
-                                     Stop& stop) {
+                                     Cancellation& stop) {
     if (window.coarse_usable) {
         const Looked looked = packet_steps().look(window, field, bundle_field_.unit(), limit,
                                                   lanes_, part.first, part.end, surfaces, stop);

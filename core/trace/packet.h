@@ -49,7 +49,7 @@ class PacketTracer {
   private:
     void take(const RayBundle& rays, bool in_parts);
     std::size_t surface_in(const Window& window, const BundlePart& part, const Field& field,
-                           double limit, BundleSurfaces& surfaces, Stop& stop);
+                           double limit, BundleSurfaces& surfaces, Cancellation& stop);
 
     BundleField bundle_field_;
     Lanes lanes_;

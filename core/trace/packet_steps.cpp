@@ -924,7 +924,7 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
 
 void surface(const Window& window, const Field& field, const Lanes& lanes,
              std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface,
-             Stop& stop) {
+             Cancellation& stop) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     for (std::size_t first = 0; first < index.size(); first += N) {
@@ -1001,7 +1001,7 @@ HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32
 // The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
 // they bound the errors of F and of |grad F|.
 Looked look(const Window& window, const Field& field, double unit, double limit, const Lanes& lanes,
-            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces, Stop& stop) {
+            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces, Cancellation& stop) {
     const F d;
     const D wide;
     const std::size_t N = hn::Lanes(d);

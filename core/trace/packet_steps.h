@@ -88,13 +88,13 @@ struct PacketSteps {
     // in float: within 2^-8, or nx = NaN where float might lose more.
     Looked (*look)(const Window& window, const Field& field, double unit, double limit,
                    const Lanes& lanes, std::size_t first, std::size_t end,
-                   BundleSurfaces& surfaces, Stop& stop);
+                   BundleSurfaces& surfaces, Cancellation& stop);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.
     void (*surface)(const Window& window, const Field& field, const Lanes& lanes,
                     std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface,
-                    Stop& stop);
+                    Cancellation& stop);
 
     // Those that still walk are misses, the others hits or unresolved.
     void (*conclude)(const Lanes& lanes, BundleIsolations& isolations);

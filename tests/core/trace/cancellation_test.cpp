@@ -1,5 +1,5 @@
 // How soon work ends that is to end: in evaluations, whatever they take.
-#include "core/math/stop.h"
+#include "core/math/cancellation.h"
 
 #include <gtest/gtest.h>
 
@@ -33,26 +33,26 @@ Scene crowd() {
 
 const Ray through_the_crowd{{0, 0, 8}, {0.001, 0.002, -1}};
 
-TEST(Stop, IsSeenAfterSoManyEvaluations) {
+TEST(Cancellation, IsSeenAfterSoManyEvaluations) {
     std::atomic<bool> flag{false};
-    Stop stop(flag);
-    EXPECT_FALSE(stop.after(Stop::often));
+    Cancellation stop(flag);
+    EXPECT_FALSE(stop.after(Cancellation::often));
     flag = true;
-    EXPECT_FALSE(stop.after(Stop::often - 1));
+    EXPECT_FALSE(stop.after(Cancellation::often - 1));
     EXPECT_FALSE(stop.requested());
     EXPECT_TRUE(stop.after(1));
     EXPECT_TRUE(stop.after(0));
     EXPECT_TRUE(stop.requested());
-    EXPECT_FALSE(Stop().after(10 * Stop::often));
+    EXPECT_FALSE(Cancellation().after(10 * Cancellation::often));
 }
 
-TEST(Stop, EndsOneRayOfEachMethod) {
+TEST(Cancellation, EndsOneRayOfEachMethod) {
     const Field field = compile(crowd());
     const std::atomic<bool> flag{true};
     for (const Method* method : methods()) {
         SCOPED_TRACE(method->name());
         Counts counts;
-        counts.stop = Stop(flag);
+        counts.stop = Cancellation(flag);
         std::size_t rays = 0;
         while (!counts.stop.requested() && ++rays < 10'000) {
             const Answer answer =
@@ -61,12 +61,12 @@ TEST(Stop, EndsOneRayOfEachMethod) {
         }
         EXPECT_TRUE(counts.stop.requested());
         // A few more of each element, for what a method finishes.
-        EXPECT_LE(counts.element_evaluations, Stop::often + 100 * many);
+        EXPECT_LE(counts.element_evaluations, Cancellation::often + 100 * many);
     }
 }
 
 // What is seen while a tile is traced says nothing that is not so.
-TEST(Stop, EndsBundlesOfEachMethodOnEachInstructionSet) {
+TEST(Cancellation, EndsBundlesOfEachMethodOnEachInstructionSet) {
     const Scene scene = crowd();
     const Field field = compile(scene);
     const std::atomic<bool> flag{true};
@@ -82,13 +82,13 @@ TEST(Stop, EndsBundlesOfEachMethodOnEachInstructionSet) {
         for (const Method* method : methods()) {
             SCOPED_TRACE(std::string(set) + " " + std::string(method->name()));
             Counts counts;
-            counts.stop = Stop(flag);
+            counts.stop = Cancellation(flag);
             auto isolations = std::make_unique<BundleIsolations>();
             auto surfaces = std::make_unique<BundleSurfaces>();
             method->trace_bundle(field, all_elements(field), *rays, {}, *isolations,
                                  surfaces.get(), counts);
             EXPECT_TRUE(counts.stop.requested());
-            EXPECT_LE(counts.element_evaluations, Stop::often + 100 * many);
+            EXPECT_LE(counts.element_evaluations, Cancellation::often + 100 * many);
             EXPECT_EQ(isolations->status[255], Status::unresolved);
             EXPECT_EQ(isolations->t_lo[255], 0);
             EXPECT_EQ(isolations->t_hi[255], std::numeric_limits<double>::infinity());
