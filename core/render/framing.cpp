@@ -334,14 +334,15 @@ class Search {
         return support(part, frustum_.normal[side]);
     }
 
-    // The distance that the sides known so far ask for, and a share of what is seen at it.
+    // A share of what is seen at the distance that the sides known so far ask for. The sides of a
+    // ball around the middle are touched nearer to the eye, at 1 / (1 + k^2) of that distance.
     [[nodiscard]] double tolerance(std::size_t side) const {
         const double distance =
-            std::max((reach_[to_right] + reach_[to_left]) / (2 * frustum_.half_width),
-                     (reach_[to_top] + reach_[to_bottom]) / (2 * frustum_.half_height));
+            std::max({(reach_[to_right] + reach_[to_left]) / (2 * frustum_.half_width),
+                      (reach_[to_top] + reach_[to_bottom]) / (2 * frustum_.half_height), 0.0});
         if (side >= to_far) return depth_tolerance * distance;
-        return 2 * side_tolerance * distance *
-               (side < to_top ? frustum_.half_width : frustum_.half_height);
+        const double half = side < to_top ? frustum_.half_width : frustum_.half_height;
+        return 2 * side_tolerance * distance * half / (1 + half * half);
     }
 
     // The one that is known worst, compared with its tolerance; `sides` where all are good enough.
