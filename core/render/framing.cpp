@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/field/bounding_box.h"
 #include "core/field/kernel.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
@@ -35,7 +34,7 @@ constexpr double least_of_root = 0x1p-40;
 // The work is limited by what it looks at, so that it depends on the scene alone.
 constexpr std::size_t most_cells = 8192;
 constexpr std::size_t most_evaluations = std::size_t{1} << 16;
-constexpr std::size_t most_evaluations_each = 12;  // and so many more for each element
+constexpr std::size_t most_evaluations_each = 2;  // and so many more for each element
 
 // Elements are bounded together in cells whose half is no less than this part of their ball.
 constexpr double most_of_half = 2;
@@ -47,11 +46,11 @@ constexpr std::size_t block_size = 16;
 // listed: what it can add is kept.
 constexpr double share_left_out = 0x1p-9;
 
-// Of up to so many elements, balls around each bound the solid along a normal.
-constexpr std::size_t most_balls = 512;
-
-// Halvings of the way from a point of the solid to the farthest that it may reach.
+// Halvings of the way from a point of the solid to the farthest that it may reach; of so few
+// elements the planes are found to the last digits that matter, so that a ball is in the middle.
 constexpr int halvings = 8;
+constexpr int halvings_of_few = 40;
+constexpr std::size_t few = 16;
 
 // More than what a few roundings of lengths can cost, relative to the largest of them.
 constexpr double slack = 0x1p-44;
@@ -130,10 +129,7 @@ class Search {
                 if (!open_top(side)) return false;
             }
             const std::size_t side = worst_side();
-            if (side == sides || cells_.size() > most_cells ||
-                evaluations_ > most_evaluations + most_evaluations_each * field_.size()) {
-                break;
-            }
+            if (side == sides || cells_.size() > most_cells || evaluations_ > budget()) break;
             const std::size_t top = queue_[side].top().second;
             const double half = cells_[top].half;
             if (half <= least_of_tolerance * tolerance(side) || half <= least_of_root * root_half_) {
@@ -174,7 +170,7 @@ class Search {
         lost_ = 16 * slack * (length(all.hi - middle_) + length(all.lo - middle_));
 
         seen_.fill(-infinity<double>);
-        balls_ = reach_of_balls();
+        planes_.fill(infinity<double>);
         Cell whole;
         whole.half = root_half_;
         if (field_.clusters.empty()) {
@@ -195,7 +191,10 @@ class Search {
             queue_[side].push({reach_of(cells_[0], side), 0});
             if (!open_top(side)) return false;
         }
-        for (std::size_t side = 0; side < sides; ++side) try_skeletons(side);
+        for (std::size_t side = 0; side < sides; ++side) {
+            if (evaluations_ < budget() / 4) try_skeletons(side);
+            bound_by_planes(side);
+        }
         return true;
     }
 
@@ -238,42 +237,101 @@ class Search {
         }
     }
 
-    // How far the balls of core/field/bounding_box.h reach.
-    [[nodiscard]] Reach reach_of_balls() const {
-        Reach reach;
-        reach.fill(infinity<double>);
-        if (field_.size() > most_balls) return reach;
-        reach.fill(-infinity<double>);
-        const std::size_t positive = count_positive(field_);
-        for (std::size_t i = 0; i < field_.size(); ++i) {
-            const double radius = ivory::reach(field_, i, positive);
-            if (radius < 0) continue;
-            Box3 skeleton = skeleton_box(field_, i);
-            skeleton = {skeleton.lo - middle_, skeleton.hi - middle_};
-            const double size = length(skeleton.lo) + length(skeleton.hi) + radius;
-            for (std::size_t side = 0; side < sides; ++side) {
-                const Vec3d& n = frustum_.normal[side];
-                reach[side] = std::max(
-                    reach[side], support(skeleton, n) + length(n) * (radius + slack * size));
-            }
-        }
-        return reach;
+    [[nodiscard]] std::size_t budget() const {
+        return most_evaluations + most_evaluations_each * field_.size();
     }
 
-    // Where cluster or element n reaches about farthest along a normal.
-    [[nodiscard]] Vec3d place(std::size_t n, const Vec3d& normal) const {
-        if (!field_.clusters.empty()) return cluster(static_cast<std::uint32_t>(n)).center - middle_;
-        const Vec3d a = field_.a(n) - middle_;
-        if (field_.shape[n] == Shape::segment) {
-            const Vec3d b = field_.b(n) - middle_;
+    // How far the skeleton of an element reaches along a normal, about.
+    [[nodiscard]] Vec3d farthest(std::size_t i, const Vec3d& normal) const {
+        const Vec3d a = field_.a(i) - middle_;
+        if (field_.shape[i] == Shape::segment) {
+            const Vec3d b = field_.b(i) - middle_;
             return dot(b, normal) > dot(a, normal) ? b : a;
         }
-        if (field_.shape[n] == Shape::circle) {
-            const Vec3d axis{field_.mx[n], field_.my[n], field_.mz[n]};
+        if (field_.shape[i] == Shape::circle) {
+            const Vec3d axis{field_.mx[i], field_.my[i], field_.mz[i]};
             const Vec3d along = normal - dot(normal, axis) * axis;
-            return length(along) > 0 ? a + field_.radius[n] * unit(along) : a;
+            return length(along) > 0 ? a + field_.radius[i] * unit(along) : a;
         }
         return a;
+    }
+
+    // Likewise of an element, or the middle of a cluster where there are any.
+    [[nodiscard]] Vec3d place(std::size_t n, const Vec3d& normal) const {
+        if (field_.clusters.empty()) return farthest(n, normal);
+        return cluster(static_cast<std::uint32_t>(n)).center - middle_;
+    }
+
+    // Beyond the plane n . p = t an element adds no more than b k(s) at the distance of its
+    // skeleton from there: moves the bound of a side to where these add up to T. Many elements one
+    // beside the other count as if they were all at one place, and yet it is much nearer than the
+    // box.
+    void bound_by_planes(std::size_t side) {
+        struct Behind {
+            double farthest;  // along the normal
+            std::uint32_t element;
+        };
+        const Vec3d& normal = frustum_.normal[side];
+        const double normal_length = length(normal), per_length = (1 - slack) / normal_length;
+        const double least = share_left_out * field_.threshold / static_cast<double>(field_.size());
+        const double far = far_beyond(least);
+        double inside = std::max(seen_[side], -radius_ * normal_length), outside = reach_[side];
+        double left_out = 0;
+        std::vector<Behind> behind;
+        const auto take = [&](std::size_t i) {
+            if (field_.strength[i] < 0) return;
+            behind.push_back({dot(farthest(i, normal), normal), static_cast<std::uint32_t>(i)});
+        };
+        if (field_.clusters.empty()) {
+            for (std::size_t i = 0; i < field_.size(); ++i) take(i);
+        }
+        for (std::uint32_t n = 0; n < field_.clusters.size(); ++n) {
+            const Ball ball = cluster(n);
+            const double away = (inside - dot(ball.center - middle_, normal)) * per_length -
+                                ball.radius - lost_;
+            const double s = away > 0 ? away * away * ball.inverse_square * (1 - slack) : 0;
+            const bool is_blinn = ball.kernel == KernelKind::blinn;
+            if (s >= (is_blinn ? far : 1)) {
+                if (is_blinn) left_out += least;
+                continue;
+            }
+            for (std::uint32_t i = ball.first; i < ball.end; ++i) take(i);
+        }
+        const double rounding = 1 + static_cast<double>(field_.size() + 8) * 0x1p-51;
+        const int steps = field_.size() <= few ? halvings_of_few : halvings;
+        for (int step = 0; step < steps && inside < outside; ++step) {
+            const double plane = 0.5 * (inside + outside);
+            std::size_t kept = 0;
+            double sum = left_out, dropped = 0;
+            for (std::size_t n = 0; n < behind.size(); ++n) {
+                const Behind& at = behind[n];
+                const std::size_t i = at.element;
+                const double away = (plane - at.farthest) * per_length - lost_;
+                const double q = away > 0 ? away * field_.inverse_width[i] * (1 - slack) : 0;
+                const double s = q * q * (1 - slack);
+                const bool is_blinn = field_.kernel[i] == KernelKind::blinn;
+                if (s >= (is_blinn ? far : 1)) {
+                    if (is_blinn) dropped += least;
+                    continue;
+                }
+                const Behind copy = at;
+                if (sum < field_.threshold) {
+                    sum += field_.strength[i] * (s > 0 ? kernel_at(field_.kernel[i], s).hi : 1);
+                }
+                std::swap(behind[n], behind[kept]);
+                behind[kept++] = copy;
+            }
+            evaluations_ += kept;
+            if ((sum + dropped) * rounding < field_.threshold) {
+                outside = plane;
+            } else {
+                inside = plane;
+                // Farther on they add even less.
+                left_out += dropped;
+                behind.resize(kept);
+            }
+        }
+        reach_[side] = planes_[side] = outside;
     }
 
     // Looks for a point of the solid that reaches far, from the skeletons that do on, so that less has to be searched.
@@ -321,7 +379,7 @@ class Search {
             }
         }
         if (queue.empty()) return false;
-        reach_[side] = std::min(queue.top().first, balls_[side]);
+        reach_[side] = std::min(queue.top().first, planes_[side]);
         return true;
     }
 
@@ -395,9 +453,15 @@ class Search {
         sum.far = far_beyond(sum.least);
         sum.rough = !parent.blocks.empty() && cell.half > 0;
         cell.left_out = parent.left_out;
-        for (const std::uint32_t n : parent.blocks) add_block(n, cell, sum);
-        for (const std::uint32_t n : parent.clusters) add_cluster(n, cell, sum);
-        for (const std::uint32_t i : parent.elements) add_element(i, cell, sum);
+        const auto add_all = [&](const std::vector<std::uint32_t>& list, auto add) {
+            for (const std::uint32_t n : list) {
+                if (cell.half == 0 && is_settled(sum)) return;  // of a point no more is asked
+                (this->*add)(n, cell, sum);
+            }
+        };
+        add_all(parent.blocks, &Search::add_block);
+        add_all(parent.clusters, &Search::add_cluster);
+        add_all(parent.elements, &Search::add_element);
 
         const double count = static_cast<double>(sum.count + 8);
         evaluations_ += sum.count;
@@ -568,7 +632,7 @@ class Search {
     std::array<Queue, sides> queue_;
     Reach reach_{};  // no point of the solid is farther
     Reach seen_{};   // a point of the solid is about that far
-    Reach balls_{};
+    Reach planes_{};  // proved by planes alone
     std::size_t evaluations_ = 0;
 };
 

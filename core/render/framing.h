@@ -2,9 +2,10 @@
 //
 // For a given direction, window and field of view the four planes through the eye and the edges of
 // the window have fixed normals, so that where the eye has to be follows from four numbers: how far
-// the solid {f >= 0} reaches along each of these normals. Each number is found by branch and bound
-// over cubes: those in which f < 0 certainly holds are left out, and the one that reaches farthest
-// is cut into eight until it holds the surface to within a hundredth of the picture.
+// the solid {f >= 0} reaches along each of these normals. Each is bounded by planes beyond which
+// the elements cannot add up to T, then by branch and bound over cubes: those in which f < 0
+// certainly holds are left out, and the one that reaches farthest is cut into eight, until the
+// bound is within a hundredth of the picture of a point of the solid.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,8 @@ struct Framing {
 
 // The camera with the direction of view, `up` and `fov` of `seen_as`, a valid one, that frames the
 // surface in a picture with `aspect` = width / height, > 0. Its target is in the middle of the
-// surface's depth. Depends on the arguments alone. The work is limited: about a millisecond for a
-// few elements, and less than compile for many.
+// surface's depth. Depends on the arguments alone. The work is limited: a few milliseconds for a few
+// elements, and less than compile for many.
 // Throws Error where the scene is too large for doubles.
 [[nodiscard]] Framing frame_surface(const Field& field, const Camera& seen_as, double aspect);
 
