@@ -82,13 +82,15 @@ struct Frustum {
 };
 
 Frustum frustum_of(const View& view, double aspect) {
-    Frustum frustum{view.forward, view.right, view.top, aimed_share * view.s * aspect,
-                  aimed_share * view.s, {}};
+    Frustum frustum{view.forward,         view.right, view.top, aimed_share * view.s * aspect,
+                    aimed_share * view.s, {}};
     const Vec3d back = -1.0 * frustum.forward;
     frustum.normal = {frustum.right + frustum.half_width * back,
-                     -1.0 * frustum.right + frustum.half_width * back,
-                     frustum.top + frustum.half_height * back,
-                     -1.0 * frustum.top + frustum.half_height * back, frustum.forward, back};
+                      -1.0 * frustum.right + frustum.half_width * back,
+                      frustum.top + frustum.half_height * back,
+                      -1.0 * frustum.top + frustum.half_height * back,
+                      frustum.forward,
+                      back};
     return frustum;
 }
 
@@ -132,7 +134,8 @@ class Search {
             if (side == sides || cells_.size() > most_cells || evaluations_ > budget()) break;
             const std::size_t top = queue_[side].top().second;
             const double half = cells_[top].half;
-            if (half <= least_of_tolerance * tolerance(side) || half <= least_of_root * root_half_) {
+            if (half <= least_of_tolerance * tolerance(side) ||
+                half <= least_of_root * root_half_) {
                 seen_[side] = reach_[side];
             } else {
                 cut(top);
@@ -200,8 +203,14 @@ class Search {
 
     [[nodiscard]] Ball cluster(std::uint32_t n) const {
         const Clusters& all = field_.clusters;
-        return {{all.x[n], all.y[n], all.z[n]}, all.radius[n], all.above[n], all.below[n],
-                all.inverse_square[n], field_.kernel[all.first[n]], all.first[n], all.first[n + 1]};
+        return {{all.x[n], all.y[n], all.z[n]},
+                all.radius[n],
+                all.above[n],
+                all.below[n],
+                all.inverse_square[n],
+                field_.kernel[all.first[n]],
+                all.first[n],
+                all.first[n + 1]};
     }
 
     // Clusters of one group follow each other along a curve through space.
@@ -222,8 +231,8 @@ class Search {
                 block.radius = block.above = block.below = 0;
                 for (std::uint32_t n = first; n < block.end; ++n) {
                     const Ball ball = cluster(n);
-                    block.radius = std::max(
-                        block.radius, length(ball.center - block.center) + ball.radius);
+                    block.radius =
+                        std::max(block.radius, length(ball.center - block.center) + ball.radius);
                     block.above += ball.above;
                     block.below += ball.below;
                     block.inverse_square = std::min(block.inverse_square, ball.inverse_square);
@@ -287,8 +296,8 @@ class Search {
         }
         for (std::uint32_t n = 0; n < field_.clusters.size(); ++n) {
             const Ball ball = cluster(n);
-            const double away = (inside - dot(ball.center - middle_, normal)) * per_length -
-                                ball.radius - lost_;
+            const double away =
+                (inside - dot(ball.center - middle_, normal)) * per_length - ball.radius - lost_;
             const double s = away > 0 ? away * away * ball.inverse_square * (1 - slack) : 0;
             const bool is_blinn = ball.kernel == KernelKind::blinn;
             if (s >= (is_blinn ? far : 1)) {
@@ -334,7 +343,8 @@ class Search {
         reach_[side] = planes_[side] = outside;
     }
 
-    // Looks for a point of the solid that reaches far, from the skeletons that do on, so that less has to be searched.
+    // Looks for a point of the solid that reaches far, from the skeletons that do on, so that less
+    // has to be searched.
     void try_skeletons(std::size_t side) {
         const Vec3d& normal = frustum_.normal[side];
         const std::size_t count = field_.clusters.empty() ? field_.size() : field_.clusters.size();
@@ -368,7 +378,8 @@ class Search {
         }
     }
 
-    // Puts the farthest cell that has not been cut on top of the side's queue. False: there is none.
+    // Puts the farthest cell that has not been cut on top of the side's queue. False: there is
+    // none.
     bool open_top(std::size_t side) {
         Queue& queue = queue_[side];
         while (!queue.empty() && cells_[queue.top().second].first_child != 0) {
@@ -440,16 +451,17 @@ class Search {
     // What the field can be in a cell, from the list of the one that it was cut out of.
     void look(const Cell& parent, Cell& cell) {
         for (std::size_t k = 0; k < 3; ++k) {
-            if (cell.center[k] + cell.half < box_.lo[k] || cell.center[k] - cell.half > box_.hi[k]) {
+            if (cell.center[k] + cell.half < box_.lo[k] ||
+                cell.center[k] - cell.half > box_.hi[k]) {
                 cell.outside = true;
                 return;
             }
         }
         Sum sum;
         sum.least = share_left_out * field_.threshold /
-                    static_cast<double>(
-                        parent.elements.size() +
-                        cluster_size * (parent.clusters.size() + block_size * parent.blocks.size()));
+                    static_cast<double>(parent.elements.size() +
+                                        cluster_size * (parent.clusters.size() +
+                                                        block_size * parent.blocks.size()));
         sum.far = far_beyond(sum.least);
         sum.rough = !parent.blocks.empty() && cell.half > 0;
         cell.left_out = parent.left_out;
@@ -465,7 +477,8 @@ class Search {
 
         const double count = static_cast<double>(sum.count + 8);
         evaluations_ += sum.count;
-        const double rounding = count * 0x1p-51 * (sum.magnitude + cell.left_out + field_.threshold);
+        const double rounding =
+            count * 0x1p-51 * (sum.magnitude + cell.left_out + field_.threshold);
         cell.outside = sum.above + cell.left_out + rounding < field_.threshold;
         cell.value = sum.value - field_.threshold;
     }
@@ -537,8 +550,7 @@ class Search {
             at_center += off * off;
         }
         const double distance = std::sqrt(nearest) * (1 - slack) - ball.radius - lost_;
-        const double s =
-            distance > 0 ? distance * distance * ball.inverse_square * (1 - slack) : 0;
+        const double s = distance > 0 ? distance * distance * ball.inverse_square * (1 - slack) : 0;
         const bool is_blinn = ball.kernel == KernelKind::blinn;
         ++sum.count;
         if (s >= (is_blinn ? sum.far : 1)) {
@@ -551,8 +563,7 @@ class Search {
             return Added::none_yet;
         }
         if (is_settled(sum)) return Added::together;
-        const double most =
-            ball.above * (s > 0 ? kernel_at(ball.kernel, s).hi : 1) * (1 + slack);
+        const double most = ball.above * (s > 0 ? kernel_at(ball.kernel, s).hi : 1) * (1 + slack);
         sum.above += most;
         sum.magnitude += most;
         if (is_point) {
@@ -603,14 +614,12 @@ class Search {
             return;
         }
         cell.elements.push_back(i);
-        farthest =
-            (farthest + (half_diagonal * cell.half + lost_) * per_width) * (1 + 4 * slack);
+        farthest = (farthest + (half_diagonal * cell.half + lost_) * per_width) * (1 + 4 * slack);
         // What is not a number is out of the range of doubles: 0 is a bound of what carves.
         const double far_s = farthest * farthest * (1 + slack);
-        const double bound = b > 0 ? b * largest
-                             : far_s < infinity<double>
-                                 ? b * kernel_at(field_.kernel[i], far_s).lo
-                                 : 0;
+        const double bound = b > 0                      ? b * largest
+                             : far_s < infinity<double> ? b * kernel_at(field_.kernel[i], far_s).lo
+                                                        : 0;
         sum.above += bound;
         sum.magnitude += std::abs(bound);
         sum.value += b * midpoint(kernel_at(field_.kernel[i], s));
@@ -630,8 +639,8 @@ class Search {
     std::vector<Cell> cells_;
     std::vector<Ball> blocks_;
     std::array<Queue, sides> queue_;
-    Reach reach_{};  // no point of the solid is farther
-    Reach seen_{};   // a point of the solid is about that far
+    Reach reach_{};   // no point of the solid is farther
+    Reach seen_{};    // a point of the solid is about that far
     Reach planes_{};  // proved by planes alone
     std::size_t evaluations_ = 0;
 };
@@ -686,9 +695,8 @@ bool is_framed(const Extent& extent, const Frustum& wanted, const Camera& camera
 Camera camera_for(const Extent& extent, const Frustum& frustum, const Camera& seen_as,
                   double aspect) {
     const Reach& reach = extent.reach;
-    const double needed =
-        std::max((reach[to_right] + reach[to_left]) / (2 * frustum.half_width),
-                 (reach[to_top] + reach[to_bottom]) / (2 * frustum.half_height));
+    const double needed = std::max((reach[to_right] + reach[to_left]) / (2 * frustum.half_width),
+                                   (reach[to_top] + reach[to_bottom]) / (2 * frustum.half_height));
     const Vec3d across = 0.5 * (reach[to_right] - reach[to_left]) * frustum.right +
                          0.5 * (reach[to_top] - reach[to_bottom]) * frustum.top;
     const double depth = 0.5 * (reach[to_far] - reach[to_near]);

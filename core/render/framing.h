@@ -1,4 +1,5 @@
-// The camera that frames the surface, proved: of a scene without a camera, and of the viewer's Home.
+// The camera that frames the surface, proved: of a scene without a camera, and of the viewer's
+// Home.
 //
 // For a given direction, window and field of view the four planes through the eye and the edges of
 // the window have fixed normals, so that where the eye has to be follows from four numbers: how far
@@ -28,9 +29,9 @@ struct Framing {
 
 // The camera with the direction of view, `up` and `fov` of `seen_as`, a valid one, that frames the
 // surface in a picture with `aspect` = width / height, > 0. Its target is in the middle of the
-// surface's depth. Depends on the arguments alone. The work is limited: a few milliseconds for a few
-// elements, and less than compile for many.
-// Throws Error where the scene is too large for doubles.
+// surface's depth. Depends on the arguments alone. The work is limited: a few milliseconds for a
+// few elements, and less than compile for many. Throws Error where the scene is too large for
+// doubles.
 [[nodiscard]] Framing frame_surface(const Field& field, const Camera& seen_as, double aspect);
 
 // The camera of a scene without one: framed from the direction (0.4, 0.3, 1).

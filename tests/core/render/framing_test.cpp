@@ -179,8 +179,9 @@ TEST(Framing, AnEmptySurfaceIsTheUnitBox) {
     EXPECT_TRUE(frame_surface(two, {{0.4, 0.3, 1}, {0, 0, 0}}, 1.5).empty);
     EXPECT_EQ(default_camera(two, 1.5), box);
     // The strengths cancel.
-    const Field carved = compile(scene_of({{.skeleton = PointSkeleton{{5, 0, 0}}},
-                                           {.skeleton = PointSkeleton{{5, 0, 0}}, .strength = -0.8}}));
+    const Field carved =
+        compile(scene_of({{.skeleton = PointSkeleton{{5, 0, 0}}},
+                          {.skeleton = PointSkeleton{{5, 0, 0}}, .strength = -0.8}}));
     EXPECT_EQ(default_camera(carved, 1.5), box);
 }
 
@@ -208,7 +209,8 @@ TEST(Framing, ASurfaceThatIsAPointIsStillSeen) {
 }
 
 TEST(Framing, WhatDoublesCannotFrameIsRefused) {
-    const Scene scene = scene_of({{.skeleton = SegmentSkeleton{{-1e308, 0, 0}, {1.7e308, 1e308, 1}}}});
+    const Scene scene =
+        scene_of({{.skeleton = SegmentSkeleton{{-1e308, 0, 0}, {1.7e308, 1e308, 1}}}});
     EXPECT_NE(tests::error_line([&] {
                   static_cast<void>(default_camera(compile(scene), 1));
               }).find("give it a camera"),
