@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/field/kernel.h"
+#include "core/kernel/kernels.h"
 #include "core/math/direction.h"
 
 namespace ivory {

@@ -19,7 +19,7 @@ constexpr double visible_share = 1e-6;    // of the threshold
 constexpr std::size_t most_changed = 16;  // elements: beyond, all tiles are traced anew
 constexpr int most_balls = 24;            // along one skeleton
 
-struct Ball {
+struct Reached {
     Vec3d center;
     double radius;
 };
@@ -28,23 +28,28 @@ double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 // Distance from the skeleton beyond which |F| <= share T.
 double reach(const Element& element, double threshold) {
-    if (element.kernel != KernelKind::blinn) return element.width;
-    const double ratio = std::abs(element.strength) / (visible_share * threshold);
-    return ratio <= 1 ? 0 : element.width * std::sqrt(std::log(ratio));
+    return with_kernel(element.kernel, [&]<class K>() {
+        if constexpr (K::ends) {
+            return element.width;
+        } else {
+            const double ratio = std::abs(element.strength) / (visible_share * threshold);
+            return ratio <= 1 ? 0 : element.width * std::sqrt(K::level(std::log(ratio)));
+        }
+    });
 }
 
 // Balls of that reach along a piece of the skeleton of that length, no farther apart than the
 // reach: with half the distance added to their radii they cover all points that are within reach of
 // it.
 template <class Place>
-void cover(double skeleton_length, double radius, const Place& place, std::vector<Ball>& balls) {
+void cover(double skeleton_length, double radius, const Place& place, std::vector<Reached>& balls) {
     const double wanted = radius > 0 ? std::ceil(skeleton_length / radius) : most_balls;
     const int pieces = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_balls)));
     for (int i = 0; i < pieces; ++i)
         balls.push_back({place((i + 0.5) / pieces), radius + 0.5 * skeleton_length / pieces});
 }
 
-void cover(const Element& element, double threshold, std::vector<Ball>& balls) {
+void cover(const Element& element, double threshold, std::vector<Reached>& balls) {
     if (!element.visible) return;
     const double radius = reach(element, threshold);
     if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
@@ -118,12 +123,12 @@ std::optional<std::vector<std::uint8_t>> touched_tiles(const Scene& before, cons
     if (is_moved(changed)) return std::vector<std::uint8_t>(tiles.size(), 0);
     if (changed.before.size() + changed.after.size() > most_changed) return std::nullopt;
 
-    std::vector<Ball> balls;
+    std::vector<Reached> balls;
     for (const Element& element : changed.before) cover(element, before.threshold, balls);
     for (const Element& element : changed.after) cover(element, after.threshold, balls);
 
     std::vector<std::uint8_t> touched(tiles.size(), 0);
-    for (const Ball& ball : balls) {
+    for (const Reached& ball : balls) {
         const Vec3d to_center = ball.center - eye;
         const double distance = length(to_center);
         if (!(distance > ball.radius)) return std::nullopt;  // the eye is in it

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/field/kernel.h"
 
 namespace ivory {
 namespace {
@@ -56,24 +55,28 @@ namespace {
 double level(const Field& field, std::size_t i, std::size_t positive) {
     const double n = static_cast<double>(positive);
     if (field.strength[i] < 0 || certainly_low(field, i, 0, n)) return -1;
-    // The least s found for which the field is certainly low: Blinn's has a closed form, to be
-    // confirmed; the others end at 1 and are halved towards their level.
+    // The least s found for which the field is certainly low: kernels that never end have a closed
+    // form, to be confirmed; the others end at 1 and are halved towards their level.
     double s = 1;
-    if (field.kernel[i] == KernelKind::blinn) {
-        s = std::fmax(std::log(n) + std::log(field.strength[i]) - std::log(field.threshold), 0.0);
-        for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2) {
-            // exp(-s) is below all doubles, and yet too much: no ball that doubles can tell.
-            if (s > 800) return infinity<double>;
-            s = s * (1 + pad) + pad;
+    return with_kernel(field.kernel[i], [&]<class K>() {
+        if constexpr (K::ends) {
+            double lo = 0;
+            for (int step = 0; step < 60; ++step) {
+                const double middle = 0.5 * (lo + s);
+                (certainly_low(field, i, middle, n) ? s : lo) = middle;
+            }
+        } else {
+            s = std::fmax(
+                K::level(std::log(n) + std::log(field.strength[i]) - std::log(field.threshold)),
+                0.0);
+            for (double pad = 0x1p-48; !certainly_low(field, i, s, n); pad *= 2) {
+                // k(s) is below all doubles, and yet too much: no ball that doubles can tell.
+                if (s > K::vanishes) return infinity<double>;
+                s = s * (1 + pad) + pad;
+            }
         }
-    } else {
-        double lo = 0;
-        for (int step = 0; step < 60; ++step) {
-            const double middle = 0.5 * (lo + s);
-            (certainly_low(field, i, middle, n) ? s : lo) = middle;
-        }
-    }
-    return s;
+        return s;
+    });
 }
 
 double radius_at(double level, double width) {
@@ -88,28 +91,7 @@ double reach(const Field& field, std::size_t i, std::size_t positive) {
 }
 
 Box3 skeleton_box(const Field& field, std::size_t i) {
-    const Vec3d a = field.a(i), b = field.b(i);
-    if (field.shape[i] == Shape::point) return {a, a};
-    if (field.shape[i] == Shape::segment) {
-        Box3 box{a, a};
-        box.include({b, b});
-        return box;
-    }
-    // Along axis k a circle reaches r sqrt(1 - n_k^2), written without its cancellation.
-    const double largest = std::fmax(std::abs(b.x), std::fmax(std::abs(b.y), std::abs(b.z)));
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    const Vec3d n{std::ldexp(b.x, -exponent), std::ldexp(b.y, -exponent),
-                  std::ldexp(b.z, -exponent)};
-    const double length = std::sqrt(dot(n, n));
-    Box3 box;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double across = std::hypot(n[(k + 1) % 3], n[(k + 2) % 3]) / length;
-        const double extent = field.radius[i] * across * (1 + 32 * u);
-        box.lo[k] = sub_down(a[k], extent);
-        box.hi[k] = add_up(a[k], extent);
-    }
-    return box;
+    return with_shape(field.shape[i], [&]<class S>() { return S::box(field.columns(i)); });
 }
 
 namespace {
@@ -117,11 +99,11 @@ namespace {
 // The box holds all places within `radius` of the skeleton, certainly: quick, since rounding is
 // covered by far more than it can cost.
 bool certainly_holds(const Box3& box, const Field& field, std::size_t i, double radius) {
-    const Vec3d a = field.a(i);
-    const Vec3d b = field.shape[i] == Shape::segment ? field.b(i) : a;
-    const double most = radius + field.radius[i];  // of a circle; else 0
+    const Surroundings around =
+        with_shape(field.shape[i], [&]<class S>() { return S::surroundings(field.columns(i)); });
+    const double most = radius + around.radius;
     for (std::size_t k = 0; k < 3; ++k) {
-        const double lo = std::min(a[k], b[k]), hi = std::max(a[k], b[k]);
+        const double lo = around.box.lo[k], hi = around.box.hi[k];
         const double slack = 1e-12 * (std::abs(lo) + std::abs(hi) + most);
         if (!(lo - most - slack >= box.lo[k] && hi + most + slack <= box.hi[k])) return false;
     }

@@ -40,6 +40,7 @@
 #include "core/interval/interval.h"
 #include "core/math/cancellation.h"
 #include "core/math/vec3.h"
+#include "core/shape/bundle_entry.h"
 
 namespace ivory {
 
@@ -74,20 +75,6 @@ struct Directions {
     const double *x = nullptr, *y = nullptr, *z = nullptr;
 
     [[nodiscard]] Vec3d operator[](std::size_t k) const { return {x[k], y[k], z[k]}; }
-};
-
-// One element as the inner loop wants it. away = p - c - lambda m for a segment (c its end a),
-// lambda the foot p . m extra in 0..1; for a circle c is the centre, m the unit normal, extra the
-// radius.
-template <class Real>
-struct BundleEntry {
-    Real cx, cy, cz;
-    Real inverse_square;  // 1 / w^2, for Blinn's kernel 1 / (w^2 ln 2)
-    Real strength;        // b
-    Real slope;  // 2 b / w^2, negative for Blinn's kernel: F' = slope |k'(s)| away . d, or with k';
-                 // 0 where `kinked` counts it instead
-    Real unused[2];          // entries are written four numbers at a time
-    Real mx, my, mz, extra;  // not of points
 };
 
 // What bounds the sums of one stage, in units of its own: f = sum - T.

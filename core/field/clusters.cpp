@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <utility>
+#include <variant>
 
 #include "core/field/field.h"
 #include "core/math/box3.h"
@@ -26,14 +26,8 @@ std::uint32_t spread_bits(std::uint32_t x) {
     return (x | x << 2) & 0x09249249;
 }
 
-// The middle of an element's skeleton, and how far it reaches from there.
-std::pair<Vec3d, double> ball_of(const Field& field, std::size_t i) {
-    const Vec3d a = field.a(i);
-    if (field.shape[i] == Shape::segment) {
-        const Vec3d middle = 0.5 * a + 0.5 * field.b(i);
-        return {middle, std::max(length(a - middle), length(field.b(i) - middle)) * more};
-    }
-    return {a, field.radius[i]};
+Ball ball_of(const Field& field, std::size_t i) {
+    return with_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
 }
 
 // The element relative to its cluster's centre.
@@ -47,13 +41,14 @@ void put_member(const Field& field, std::size_t i, const Vec3d& center, NearElem
     members.z[i] = narrow(v.z * per_unit);
     members.strength[i] = narrow(field.strength[i] * field.scale);
     members.inverse_square[i] = narrow(field.inverse_square[i] * field.unit * field.unit);
-    const bool is_segment = field.shape[i] == Shape::segment;
-    const double direction = is_segment ? per_unit : 1;
-    members.mx[i] = narrow(field.mx[i] * direction);
-    members.my[i] = narrow(field.my[i] * direction);
-    members.mz[i] = narrow(field.mz[i] * direction);
-    members.extra[i] = is_segment ? narrow(std::min(field.extra[i] * field.unit * field.unit, 1e30))
-                                  : narrow(field.extra[i] * per_unit);
+    with_shape(field.shape[i], [&]<class S>() {
+        const double m_factor = unit_factor<S::m_power>(field.unit);
+        members.mx[i] = narrow(field.mx[i] * m_factor);
+        members.my[i] = narrow(field.my[i] * m_factor);
+        members.mz[i] = narrow(field.mz[i] * m_factor);
+        members.extra[i] =
+            narrow(std::min(field.extra[i] * unit_factor<S::extra_power>(field.unit), 1e30));
+    });
     members.length[i] = narrow(field.length[i] * per_unit);
 }
 
@@ -65,11 +60,7 @@ std::uint32_t Clusters::of(std::uint32_t element) const {
 }
 
 Vec3d place_of(const Element& element) {
-    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) return point->position;
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        return 0.5 * segment->a + 0.5 * segment->b;
-    }
-    return std::get<CircleSkeleton>(element.skeleton).center;
+    return std::visit([](const auto& skeleton) { return skeleton.middle(); }, element.skeleton);
 }
 
 void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
@@ -77,7 +68,7 @@ void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
     Box3 box;
     double above = 0, below = 0, widest = 0;
     for (std::size_t i = first; i < end; ++i) {
-        const Vec3d middle = ball_of(field, i).first;
+        const Vec3d middle = ball_of(field, i).center;
         box.include({middle, middle});
         (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
         widest = std::max(widest, field.width[i]);

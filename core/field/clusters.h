@@ -3,11 +3,11 @@
 // regions, blocks and tiles then look at clusters, and only a window at elements.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/field/groups.h"
 #include "core/field/near_elements.h"
 #include "core/math/vec3.h"
 
@@ -30,11 +30,11 @@ inline constexpr std::size_t least_range = 8192;
 // elements' F_i(p) add up to no more than above k(d^2 inverse_square), and to no less than
 // -below k(d^2 inverse_square).
 struct Clusters {
-    std::vector<std::uint32_t> first;                // element of each; one more: the field's size
-    std::array<std::uint32_t, 10> first_of_group{};  // of field_groups; the last: size()
-    std::vector<double> x, y, z, radius;             // of a ball that holds the skeletons
-    std::vector<double> above, below;                // sums of the b_i > 0 and of the -b_i > 0
-    std::vector<double> inverse_square;              // 1 / w^2 of the widest
+    std::vector<std::uint32_t> first;     // element of each; one more: the field's size
+    GroupStarts first_of_group{};
+    std::vector<double> x, y, z, radius;  // of a ball that holds the skeletons
+    std::vector<double> above, below;     // sums of the b_i > 0 and of the -b_i > 0
+    std::vector<double> inverse_square;   // 1 / w^2 of the widest
     // All elements of the field, each relative to the centre of its cluster; none where widths or
     // skeletons differ too much for float (core/field/bundle.h).
     NearElements members;

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "core/field/bounding_box.h"
-#include "core/math/direction.h"
 #include "core/math/parallel.h"
 
 namespace ivory {
@@ -46,25 +45,9 @@ void make_room(Field& field, std::size_t count) {
 
 // All that an element says by itself, but for its colour.
 void put(Field& field, std::size_t i, const Element& element) {
-    Vec3d a, b, m;
-    double radius = 0, length = 0, extra = 0;
-    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-        a = point->position;
-    } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        a = segment->a;
-        b = segment->b;
-        m = b - a;
-        const double square = dot(m, m);
-        length = std::sqrt(square);
-        extra = length > 1e-40 ? 1 / square : 0;
-    } else {
-        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
-        a = circle.center;
-        b = circle.normal;
-        m = unit(b);
-        radius = extra = circle.radius;
-    }
-    field.shape[i] = static_cast<Shape>(element.skeleton.index());
+    const auto [a, b, m, radius, length, extra] =
+        std::visit([](const auto& skeleton) { return skeleton.columns(); }, element.skeleton);
+    field.shape[i] = shape_of_skeleton(element.skeleton);
     field.kernel[i] = element.kernel;
     field.strength[i] = element.strength;
     field.width[i] = element.width;
@@ -101,15 +84,18 @@ void sum_up(Field& field) {
     // Any number serves as a cut; what the kernel is there is enclosed where it is used. A finite
     // support ends at 1.
     const double share = field.threshold * 0x1p-50 / static_cast<double>(field.size());
-    double of_strength = 0, of_cut = 0;  // neighbours are often equally strong
+    double of_strength = 0, minus_log = 0;  // neighbours are often equally strong
     for (std::size_t i = 0; i < field.size(); ++i) {
         const double strength = std::abs(field.strength[i]);
         if (strength != of_strength) {
             const double least = share / strength;
             of_strength = strength;
-            of_cut = least < 1 ? std::min(-std::log(least), 700.0) : 0;
+            minus_log = least < 1 ? std::min(-std::log(least), 700.0) : 0;
         }
-        field.cut[i] = field.kernel[i] == KernelKind::blinn ? of_cut : 1;
+        field.cut[i] = with_kernel(field.kernel[i], [&]<class K>() {
+            if constexpr (K::ends) return 1.0;
+            else return K::level(minus_log);
+        });
     }
     field.least_width =
         field.width.empty() ? 1 : *std::min_element(field.width.begin(), field.width.end());
@@ -161,7 +147,7 @@ Field compile(const Scene& scene, int threads) {
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         const Element& element = scene.elements[i];
         if (!element.visible) continue;
-        const auto shape = static_cast<Shape>(element.skeleton.index());
+        const Shape shape = shape_of_skeleton(element.skeleton);
         groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
         ++visible;
     }

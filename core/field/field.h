@@ -1,28 +1,18 @@
 // The compiled field: f(p) = sum of F_i(p) - T over the visible elements, as a structure of arrays.
-// F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/field/kernel.h, distances in
-// core/field/skeleton.h.
+// F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/kernel, distances d in core/shape.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/field/clusters.h"
+#include "core/field/groups.h"
 #include "core/math/box3.h"
 #include "core/math/vec3.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
-
-enum class Shape : std::uint8_t { point, segment, circle };
-
-// Elements of one shape and one kernel are a group: shape * 3 + kernel.
-inline constexpr std::size_t field_groups = 9;
-
-[[nodiscard]] constexpr std::size_t group_of(Shape shape, KernelKind kernel) {
-    return static_cast<std::size_t>(shape) * 3 + static_cast<std::size_t>(kernel);
-}
 
 // Visible elements only, sorted by group; within a group in file order, but where there are
 // clusters by their places (core/field/clusters.h). The doubles are those of the scene, unchanged:
@@ -47,21 +37,18 @@ struct Field {
     std::vector<KernelKind> kernel;
     std::vector<double> strength;       // b_i
     std::vector<double> width;          // w_i
-    std::vector<double> ax, ay, az;     // point: position; segment: a; circle: centre
-    std::vector<double> bx, by, bz;     // segment: b; circle: normal as written; point: unused
-    std::vector<double> radius;         // circle; otherwise 0
+    std::vector<double> ax, ay, az;     // SkeletonColumns::a, and so on
+    std::vector<double> bx, by, bz;
+    std::vector<double> radius;
     std::vector<Color> color;           // linear RGB
     std::vector<std::uint32_t> source;  // index in Scene::elements
-    std::array<std::uint32_t, field_groups + 1> first{};  // of each group; the last: size()
+    GroupStarts first{};
     // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an
     // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
     std::vector<double> cut;
 
     // What core/field/bundle.h asks for again and again, computed to nearest.
-    std::vector<double> mx, my, mz;  // segment: m = b - a; circle: unit normal; point: 0
-    // Segment: 1 / |m|^2, 0 where that is shorter than 1e-40; circle: radius; point: 0.
-    std::vector<double> extra;
-    std::vector<double> length;           // of m for a segment; otherwise 0
+    std::vector<double> mx, my, mz, extra, length;  // SkeletonColumns::m, and so on
     std::vector<double> inverse_width;    // 1 / w
     std::vector<double> inverse_square;   // 1 / w^2
     std::vector<float> red, green, blue;  // `color`, for what is only looked at
@@ -81,6 +68,9 @@ struct Field {
     [[nodiscard]] std::size_t size() const { return shape.size(); }
     [[nodiscard]] Vec3d a(std::size_t i) const { return {ax[i], ay[i], az[i]}; }
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
+    [[nodiscard]] SkeletonColumns columns(std::size_t i) const {
+        return {a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], extra[i]};
+    }
 };
 
 // Does not throw (but for memory); the scene has been validated by its reader. The field is the

@@ -7,105 +7,32 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-// The field of one element of strength 1 over [t0, t1], in the notation of Enclosure.
-struct Terms {
-    Interval<double> left, right, value;
-    Interval<double> left_slope, slope, curvature;
-};
+// The field of one element of strength 1 over [t0, t1].
+using Terms = KernelAlong;
 
-// [lo, hi] [k] for k >= 0, with room for four roundings of the ends.
-Interval<double> times_positive(double lo, double hi, const Interval<double>& k) {
-    const double x = lo * (lo >= 0 ? k.lo : k.hi), y = hi * (hi >= 0 ? k.hi : k.lo);
-    return {x - std::abs(x) * (4 * u), y + std::abs(y) * (4 * u)};
-}
-
-// s' k.
-Interval<double> slope_times(const SquareAt& at, const Interval<double>& k) {
-    return times_positive(at.ds - at.ds_radius, at.ds + at.ds_radius, k);
-}
-
-// (s'^2 - s'') k; the difference cancels, so its rounding is counted by its terms.
-Interval<double> bend_times(const SquareAt& at, const Interval<double>& c2,
-                            const Interval<double>& k) {
-    const double steepest = std::abs(at.ds) + at.ds_radius;
-    const double flattest = std::max(std::abs(at.ds) - at.ds_radius, 0.0);
-    const double most = steepest * steepest, fewest = flattest * flattest;
-    const double rounding = 8 * u * (most + c2.hi);
-    return times_positive(fewest - c2.hi - rounding, most - c2.lo + rounding, k);
-}
-
-// Blinn's kernel along a parabola s = least + c (t - t_0)^2: with x = s', c2 = s'' = 2 c,
-//   k   = exp(-s)              extremum at x = 0: exp(-least)
-//   k'  = -x exp(-s)           extrema at x^2 = c2: -+ sqrt(c2) exp(-1/2 - least)
-//   k'' = (x^2 - c2) exp(-s)   extrema at x = 0: -c2 exp(-least), at x^2 = 3 c2: 2 c2 exp(-3/2 -
-//   least)
-// (a one-dimensional Gaussian; x rises with t, so each range is that of its ends and of the extrema
-// between them).
-Terms blinn_parabola(const MovingSquare& square, double peak, double t0, double t1) {
-    const SquareAt a = square.at(t0), b = square.at(t1);
-    const Interval<double> c2 = square.curvature();
-    Terms k;
-    k.left = exp_minus(a.s, a.s_radius);
-    k.right = exp_minus(b.s, b.s_radius);
-    const double x0 = a.ds - a.ds_radius, x1 = b.ds + b.ds_radius;
-    const bool dips = x0 < 0 && x1 > 0;
-    k.value = {std::min(k.left.lo, k.right.lo), dips ? peak : std::max(k.left.hi, k.right.hi)};
-
-    const Interval<double> slope0 = slope_times(a, k.left);
-    const Interval<double> slope1 = slope_times(b, k.right);
-    Interval<double> slope = hull(slope0, slope1);
-    const double steepest = std::sqrt(c2.hi) * (1 + 4 * u);  // >= sqrt(c2)
-    const double flattest = std::sqrt(c2.lo) * (1 - 4 * u);  // <= sqrt(c2)
-    // exp(-least) is the value at the foot on the whole line, even if that lies outside of the
-    // window.
-    const auto extreme = [&](double factor) {
-        return std::min(factor * exp_minus(square.vertex, 0).hi, k.value.hi) * (1 + 8 * u);
-    };
-    if (x0 < steepest && x1 > flattest)
-        slope.hi = std::max(slope.hi, steepest * extreme(0.60653065971263345));
-    if (x0 < -flattest && x1 > -steepest)
-        slope.lo = std::min(slope.lo, -steepest * extreme(0.60653065971263345));
-    k.left_slope = -slope0;
-    k.slope = -slope;
-
-    const Interval<double> bend0 = bend_times(a, c2, k.left);
-    const Interval<double> bend1 = bend_times(b, c2, k.right);
-    k.curvature = hull(bend0, bend1);
-    constexpr double root3 = 1.7320508075688774;
-    const double outer = root3 * steepest * (1 + 4 * u), inner = root3 * flattest * (1 - 4 * u);
-    if ((x0 < outer && x1 > inner) || (x0 < -inner && x1 > -outer)) {
-        k.curvature.hi =
-            std::max(k.curvature.hi, 2 * c2.hi * extreme(0.22313016014842985) * (1 + 8 * u));
+// k over a thin [s], by one evaluation where the kernel knows how.
+template <class K>
+Interval<double> over_thin(const Interval<double>& s) {
+    if constexpr (!K::ends) {
+        if (s.hi < infinity<double>) return K::thin(s);
     }
-    if (dips) k.curvature.lo = std::min(k.curvature.lo, -c2.hi * peak * (1 + 4 * u));
-    return k;
-}
-
-// exp(-s) over a thin [s], by one exponential.
-Interval<double> blinn_over(const Interval<double>& s) {
-    if (!(s.hi < infinity<double>)) return kernel_over(KernelKind::blinn, s);
-    const double middle = midpoint(s);
-    return exp_minus(middle, std::max(s.hi - middle, middle - s.lo) * (1 + 4 * u));
+    return kernel_over<K>(s);
 }
 
 // Any kernel, from ranges of s, s' and s'': k(s(t))' = k' s', k(s(t))'' = k'' s'^2 + k' s''.
-Terms composed(KernelKind kernel, const Interval<double>& s0, const Interval<double>& ds0,
-               const Interval<double>& s1, const Interval<double>& s, const Interval<double>& ds,
-               const Interval<double>& dds) {
+template <class K>
+Terms composed(const Interval<double>& s0, const Interval<double>& ds0, const Interval<double>& s1,
+               const Interval<double>& s, const Interval<double>& ds, const Interval<double>& dds) {
     Terms k;
-    const KernelRange range = kernel_range(kernel, s);
-    if (kernel == KernelKind::blinn) {
-        k.left = blinn_over(s0);
-        k.right = blinn_over(s1);
-        k.left_slope = quick::mul(-k.left, ds0);
+    const KernelRange range = kernel_range<K>(s);
+    k.left = over_thin<K>(s0);
+    k.right = over_thin<K>(s1);
+    if constexpr (K::ends) {
+        k.left_slope = is_empty(s0)
+                           ? Interval<double>::entire()
+                           : quick::mul({K::slope_at(s0.lo).lo, K::slope_at(s0.hi).hi}, ds0);
     } else {
-        k.left = kernel_over(kernel, s0);
-        k.right = kernel_over(kernel, s1);
-        k.left_slope =
-            is_empty(s0)
-                ? Interval<double>::entire()
-                : quick::mul({kernel_slope_at(kernel, s0.lo).lo, kernel_slope_at(kernel, s0.hi).hi},
-                             ds0);
+        k.left_slope = quick::mul(K::slope_over(k.left, s0.lo, s0.hi), ds0);
     }
     k.value = range.k;
     k.slope = quick::mul(range.dk, ds);
@@ -113,12 +40,24 @@ Terms composed(KernelKind kernel, const Interval<double>& s0, const Interval<dou
     return k;
 }
 
+Terms composed(KernelKind kernel, const Interval<double>& s0, const Interval<double>& ds0,
+               const Interval<double>& s1, const Interval<double>& s, const Interval<double>& ds,
+               const Interval<double>& dds) {
+    return with_kernel(kernel, [&]<class K>() { return composed<K>(s0, ds0, s1, s, ds, dds); });
+}
+
 Terms parabola(KernelKind kernel, const MovingSquare& square, double peak, double t0, double t1) {
-    if (kernel == KernelKind::blinn) return blinn_parabola(square, peak, t0, t1);
-    const SquareAt a = square.at(t0), b = square.at(t1);
-    const Interval<double> ds{a.ds - a.ds_radius, b.ds + b.ds_radius};  // s' rises
-    return composed(kernel, a.value(), a.slope(), b.value(), square.over(a, b), ds,
-                    square.curvature());
+    return with_kernel(kernel, [&]<class K>() {
+        // Sharper than what follows from the ranges of s, s' and s''.
+        if constexpr (requires { K::along_parabola(square, peak, t0, t1); }) {
+            return K::along_parabola(square, peak, t0, t1);
+        } else {
+            const SquareAt a = square.at(t0), b = square.at(t1);
+            const Interval<double> ds{a.ds - a.ds_radius, b.ds + b.ds_radius};  // s' rises
+            return composed<K>(a.value(), a.slope(), b.value(), square.over(a, b), ds,
+                               square.curvature());
+        }
+    });
 }
 
 Terms hull(const Terms& a, const Terms& b) {
@@ -171,15 +110,17 @@ Interval<double> element_at(const ElementAlongRay& e, double t) {
     if (e.form == ElementAlongRay::Form::unbounded) return {0.0, 1.0};
     if (e.form == ElementAlongRay::Form::circle) {
         const Interval<double> s = e.circle.at(t).s;
-        return e.kernel == KernelKind::blinn ? blinn_over(s) : kernel_over(e.kernel, s);
+        return with_kernel(e.kernel, [&]<class K>() { return over_thin<K>(s); });
     }
     Interval<double> k = Interval<double>::empty_set();
     for (std::size_t i = 0; i < e.piece_count; ++i) {
         const Piece& piece = e.pieces[i];
         if (!(piece.where.lo <= t && t <= piece.where.hi)) continue;
         const SquareAt a = piece.square.at(t);
-        k = hull(k, e.kernel == KernelKind::blinn ? exp_minus(a.s, a.s_radius)
-                                                  : kernel_over(e.kernel, a.value()));
+        k = hull(k, with_kernel(e.kernel, [&]<class K>() {
+                     if constexpr (K::ends) return kernel_over<K>(a.value());
+                     else return K::around(a.s, a.s_radius);
+                 }));
     }
     return k;
 }

@@ -1,18 +1,19 @@
 // Elements as floats: all that the bounds of core/field/bundle_steps.h ask for, side by side.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "core/field/groups.h"
 
 namespace ivory {
 
 // As structure of arrays sorted by group. Lengths in units (Field::unit), relative to a place
 // nearby; strengths times Field::scale.
 struct NearElements {
-    std::array<std::uint32_t, 10> first{};  // of each group; the last: how many
-    std::vector<std::int32_t> element;      // indices into Field
+    GroupStarts first{};
+    std::vector<std::int32_t> element;  // indices into Field
     // As Field and BundleEntry have them; the bounds as ActiveElements.
     std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, extra, length;
     std::vector<float> least, most, peak, inverse;

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/field/kernel.h"
-#include "core/math/direction.h"
 #include "core/math/offset.h"
 
 namespace ivory {
@@ -11,33 +9,18 @@ namespace {
 
 Vec3d scaled(const Vec3d& v, double width) { return {v.x / width, v.y / width, v.z / width}; }
 
-// s = q^2 and the vector (grad s) / 2, both in units of the width.
-struct Nearest {
-    double s;
-    Vec3d away;  // from the skeleton's nearest point
-    bool defined = true;
-};
-
 Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
-    const double width = field.width[i];
-    const Vec3d v = scaled(from_a, width);
-    if (field.shape[i] == Shape::point) return {dot(v, v), v};
-    if (field.shape[i] == Shape::segment) {
-        const Vec3d m = scaled(field.b(i) - field.a(i), width);
-        const double mm = dot(m, m);
-        const double lambda = mm > 0 ? std::fmin(std::fmax(dot(v, m) / mm, 0.0), 1.0) : 0;
-        const Vec3d away = v - lambda * m;
-        return {dot(away, away), away};
-    }
-    // (rho - r)^2 + h^2 with the axis n; half its gradient is (rho - r) across / rho + h n.
-    const Vec3d n = unit(field.b(i));
-    const double r = field.radius[i] / width;
-    const double h = dot(v, n);
-    const Vec3d across = v - h * n;
-    const double rho = std::sqrt(dot(across, across));
-    const double off = rho - r;
-    const Vec3d outward = rho > 0 ? (1 / rho) * across : Vec3d{};
-    return {off * off + h * h, off * outward + h * n, rho > 0 || r == 0};
+    return with_shape(field.shape[i], [&]<class S>() {
+        return S::nearest(field.columns(i), from_a, field.width[i]);
+    });
+}
+
+// The s beyond which nothing is added.
+double end_of(KernelKind kind) {
+    return with_kernel(kind, []<class K>() {
+        if constexpr (K::ends) return 1.0;
+        else return K::vanishes;
+    });
 }
 
 // One element's share of the sample. k' is 0 beyond a finite support, where an undefined direction
@@ -45,9 +28,8 @@ Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
 void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& sum, Vec3d& weighted,
          double& weight, double& strongest, bool& defined) {
     const Nearest at = nearest(field, i, from_a);
-    // Beyond the support, and where exp(-s) is below all doubles, nothing is added; with a tiny
-    // width the numbers below could overflow there.
-    if (!(at.s < (field.kernel[i] == KernelKind::blinn ? 800 : 1))) return;
+    // With a tiny width the numbers below could overflow there.
+    if (!(at.s < end_of(field.kernel[i]))) return;
     const double b = field.strength[i];
     const double k = midpoint(kernel_at(field.kernel[i], at.s));
     const double dk = midpoint(kernel_slope_at(field.kernel[i], at.s));

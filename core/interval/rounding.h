@@ -33,6 +33,9 @@ static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<floa
 template <class Real>
 concept IeeeReal = std::same_as<Real, float> || std::same_as<Real, double>;
 
+// Half a unit in the last place of 1: the relative error of one rounding of a double to nearest.
+inline constexpr double unit_roundoff = 0x1p-53;
+
 template <IeeeReal Real>
 inline constexpr Real infinity = std::numeric_limits<Real>::infinity();
 template <IeeeReal Real>

@@ -5,25 +5,6 @@
 
 namespace ivory {
 
-const char* shape_word(const Skeleton& skeleton) {
-    // In the order of the alternatives of `Skeleton`.
-    constexpr std::array words{"point", "segment", "circle"};
-    static_assert(words.size() == std::variant_size_v<Skeleton>);
-    return words[skeleton.index()];
-}
-
-const char* kernel_word(KernelKind kernel) {
-    switch (kernel) {
-        case KernelKind::blinn:
-            return "blinn";
-        case KernelKind::nishimura:
-            return "nishimura";
-        case KernelKind::wyvill:
-            return "wyvill";
-    }
-    return "";
-}
-
 std::string DefaultNames::next(const Skeleton& skeleton) {
     const std::size_t number = ++count_[skeleton.index()];
     return shape_word(skeleton) + (" " + std::to_string(number));

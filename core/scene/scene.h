@@ -5,38 +5,16 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/kernel/kernels.h"
 #include "core/math/vec3.h"
+#include "core/shape/shapes.h"
 
 namespace ivory {
 
 // Linear RGB, each 0..1.
 using Color = Vec3d;
-
-// Field functions F(q), q = distance / width. Formulas: core/field/kernel.h.
-enum class KernelKind : unsigned char { blinn, nishimura, wyvill };
-
-struct PointSkeleton {
-    Vec3d position;
-    friend bool operator==(const PointSkeleton&, const PointSkeleton&) = default;
-};
-
-struct SegmentSkeleton {
-    Vec3d a, b;  // may coincide
-    friend bool operator==(const SegmentSkeleton&, const SegmentSkeleton&) = default;
-};
-
-// The curve, not the disc. The unit normal is normal / |normal| in exact arithmetic.
-struct CircleSkeleton {
-    Vec3d center;
-    Vec3d normal{0, 0, 1};  // any length but 0, kept as written
-    double radius = 1;      // >= 0
-    friend bool operator==(const CircleSkeleton&, const CircleSkeleton&) = default;
-};
-
-using Skeleton = std::variant<PointSkeleton, SegmentSkeleton, CircleSkeleton>;
 
 struct Element {
     Skeleton skeleton;
@@ -74,10 +52,6 @@ struct Scene {
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-// "point", "segment" or "circle": the word of the file format.
-[[nodiscard]] const char* shape_word(const Skeleton& skeleton);
-[[nodiscard]] const char* kernel_word(KernelKind kernel);
-
 // The names that elements have without a written one, told in file order: shape and number among
 // its shape ("point 1", "segment 2"). Named elements count too, so that naming one does not rename
 // those after it.
@@ -87,7 +61,7 @@ class DefaultNames {
     [[nodiscard]] std::string next(const Skeleton& skeleton);
 
   private:
-    std::array<std::size_t, std::variant_size_v<Skeleton>> count_{};
+    std::array<std::size_t, shape_count> count_{};
 };
 
 // One name per element, in file order: the written one or the default.

@@ -10,49 +10,17 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
-#include "core/field/kernel_lanes.inl"
+#include "core/shape/shape_lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
 namespace HWY_NAMESPACE {
 namespace {
 
-using F = hn::ScalableTag<float>;
-
-// From the skeleton's nearest point to p, and its square. For a circle
-// away = v - r across / rho, and its square from (rho - r)^2 + h^2.
 template <Shape shape, class Tag>
 HWY_INLINE Vec3v<Tag> away_from(Tag d, const BundleEntry<hn::TFromD<Tag>>& e, const Vec3v<Tag>& p,
                                 V<Tag>& square) {
-    using Real = hn::TFromD<Tag>;
-    Vec3v<Tag> v{hn::Sub(p.x, hn::Set(d, e.cx)), hn::Sub(p.y, hn::Set(d, e.cy)),
-                 hn::Sub(p.z, hn::Set(d, e.cz))};
-    if constexpr (shape == Shape::point) {
-        square = dot<Tag>(v, v);
-        return v;
-    }
-    const Vec3v<Tag> m{hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)};
-    const V<Tag> along = dot<Tag>(v, m);
-    const V<Tag> extra = hn::Set(d, e.extra);
-    if constexpr (shape == Shape::segment) {
-        const V<Tag> foot =
-            hn::Min(hn::Max(hn::Mul(along, extra), hn::Zero(d)), hn::Set(d, Real(1)));
-        const Vec3v<Tag> away{hn::NegMulAdd(foot, m.x, v.x), hn::NegMulAdd(foot, m.y, v.y),
-                              hn::NegMulAdd(foot, m.z, v.z)};
-        square = dot<Tag>(away, away);
-        return away;
-    } else {
-        const Vec3v<Tag> across{hn::NegMulAdd(along, m.x, v.x), hn::NegMulAdd(along, m.y, v.y),
-                                hn::NegMulAdd(along, m.z, v.z)};
-        // On the axis itself there is no direction: any finite one, which nobody relies on.
-        const Root<Tag> rho =
-            root(d, hn::Max(dot<Tag>(across, across), hn::Set(d, least_square<Real>)));
-        const V<Tag> off = hn::Sub(rho.root, extra);
-        square = hn::MulAdd(off, off, hn::Mul(along, along));
-        const V<Tag> share = hn::Mul(extra, rho.inverse);
-        return {hn::NegMulAdd(share, across.x, v.x), hn::NegMulAdd(share, across.y, v.y),
-                hn::NegMulAdd(share, across.z, v.z)};
-    }
+    return LanesOfShape<shape>::away(d, e, p, square);
 }
 
 template <class Tag>
@@ -67,7 +35,7 @@ HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std:
         V<Tag> square;
         const Vec3v<Tag> away = away_from<shape>(d, *entry, p, square);
         const KernelValue<Tag> value =
-            kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
+            LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
         sum.f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum.f);
         const V<Tag> slope = hn::Mul(hn::Set(d, entry->slope), value.dk);
         sum.slope = hn::MulAdd(slope, dot<Tag>(away, direction), sum.slope);
@@ -78,20 +46,11 @@ HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std:
 template <class Counts, class Visit>
 HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
     std::size_t first = 0;
-    const auto group = [&]<Shape shape, KernelKind kind>() HWY_ATTR {
-        const std::uint32_t count =
-            counts[static_cast<std::size_t>(shape) * 3 + static_cast<std::size_t>(kind)];
+    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR {
+        const std::uint32_t count = counts[group_of(shape, kind)];
         if (count != 0) visit.template operator()<shape, kind>(first, count);
         first += count;
-    };
-    const auto kernels = [&]<Shape shape>() HWY_ATTR {
-        group.template operator()<shape, KernelKind::blinn>();
-        group.template operator()<shape, KernelKind::nishimura>();
-        group.template operator()<shape, KernelKind::wyvill>();
-    };
-    kernels.template operator()<Shape::point>();
-    kernels.template operator()<Shape::segment>();
-    kernels.template operator()<Shape::circle>();
+    });
 }
 
 template <class Tag>
@@ -562,7 +521,7 @@ HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint3
             V<D> square;
             const Vec3v<D> away = away_from<shape>(d, *entry, p[half], square);
             const KernelValue<D> value =
-                kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
+                LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry->inverse_square)));
             const V<D> strength = hn::Set(d, entry->strength);
             sum[half].f = compensated ? two_sum(sum[half].f, hn::Mul(strength, value.k), lost[half])
                                       : hn::MulAdd(strength, value.k, sum[half].f);
@@ -595,7 +554,7 @@ HWY_INLINE void add_faint_group(F d, const BundleEntry<float>* entry, std::uint3
     for (const auto* const end = entry + count; entry != end; ++entry) {
         V<F> square;
         away_from<shape>(d, *entry, p, square);
-        const V<F> k = kernel<kind>(d, hn::Mul(square, hn::Set(d, entry->inverse_square))).k;
+        const V<F> k = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry->inverse_square))).k;
         sum = hn::MulAdd(hn::Set(d, entry->strength), k, sum);
     }
 }
@@ -891,25 +850,17 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
         V<D> square;
         const Vec3v<D> away = away_from<shape>(d, entry[k], p, square);
         const KernelValue<D> value =
-            kernel<kind>(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
-        const double inverse_square = entry[k].inverse_square * (1 / argument_scale<kind>);
+            LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
+        const double inverse_square = entry[k].inverse_square * (1 / LanesOf<kind>::argument_scale);
         const V<D> slope = hn::Mul(
-            hn::Set(d, 2 * slope_sign<kind> * entry[k].strength * inverse_square), value.dk);
+            hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength * inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
-        if constexpr (shape == Shape::circle) {
-            // Near its axis the direction is lost.
-            const Vec3v<D> m{hn::Set(d, entry[k].mx), hn::Set(d, entry[k].my),
-                             hn::Set(d, entry[k].mz)};
-            const Vec3v<D> v{hn::Sub(p.x, hn::Set(d, entry[k].cx)),
-                             hn::Sub(p.y, hn::Set(d, entry[k].cy)),
-                             hn::Sub(p.z, hn::Set(d, entry[k].cz))};
-            const V<D> along = dot<D>(v, m);
-            const V<D> across_square = hn::NegMulAdd(along, along, dot<D>(v, v));
-            const V<D> least = hn::Set(d, 1e-12 / inverse_square);
-            defined = hn::And(defined,
-                              hn::Or(hn::Gt(across_square, least), hn::Eq(value.dk, hn::Zero(d))));
+        if constexpr (SkeletonOf<shape>::has_kinks) {
+            defined = hn::And(
+                defined, hn::Or(LanesOfShape<shape>::is_defined(d, entry[k], inverse_square, p),
+                                hn::Eq(value.dk, hn::Zero(d))));
         }
         if (entry[k].strength > 0) {
             const Color& color = field.color[element[k]];
@@ -978,12 +929,12 @@ struct LookSum {
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32_t* element,
                          std::uint32_t count, const Field& field, const Vec3v<F>& p, LookSum& sum) {
-    constexpr auto to_slope = static_cast<float>(2 * slope_sign<kind> / argument_scale<kind>);
+    constexpr auto to_slope = static_cast<float>(2 * LanesOf<kind>::slope_sign / LanesOf<kind>::argument_scale);
     for (std::uint32_t k = 0; k < count; ++k) {
         const BundleEntry<float>& e = entry[k];
         V<F> square;
         const Vec3v<F> away = away_from<shape>(d, e, p, square);
-        const KernelValue<F> value = kernel<kind>(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
+        const KernelValue<F> value = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
         const V<F> slope = hn::Mul(hn::Set(d, to_slope * e.strength * e.inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),

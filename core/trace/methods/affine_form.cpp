@@ -18,22 +18,6 @@ double offset_above(double a, double slope, double x) {
     return (a - product) + slack(a, product);
 }
 
-// About where k'(s) is that slope, for any slope; the bound holds wherever it touches.
-double touching_point(KernelKind kind, double slope) {
-    switch (kind) {
-        case KernelKind::blinn:
-            return -std::log(-slope);
-        case KernelKind::nishimura: {
-            const double q = 1.5 / (1.5 - slope);  // -3/2 (1 - q) / q
-            return q * q;
-        }
-        case KernelKind::wyvill:
-            break;
-    }
-    // -2/9 (1 - s)(11 - 6 s)
-    return (17 - std::sqrt(std::max(289 - 24 * (11 + 4.5 * slope), 0.0))) / 12;
-}
-
 }  // namespace
 
 Affine kernel(KernelKind kind, const Affine& s) {
@@ -47,7 +31,8 @@ Affine kernel(KernelKind kind, const Affine& s) {
     if (hi - lo > 1e-4) {
         slope = (at_hi - at_lo) / (hi - lo);
         if (!(slope < 0)) return on_line(0, {0.0, at_lo}, s);
-        touch = touching_point(kind, slope);
+        // The bound holds wherever it touches.
+        touch = with_kernel(kind, [&]<class K>() { return K::touching_point(slope); });
         touch = touch > lo && touch < hi ? touch : middle;
     } else {
         slope = midpoint(kernel_slope_at(kind, middle));
@@ -82,7 +67,7 @@ Affine sqrt(const Affine& a) {
     return on_line(slope, {below, std::max(tangent(lo), tangent(hi))}, a);
 }
 
-Affine segment_square(const RayElement& e, const Affine& t) {
+Affine segment_square(const RaySkeleton& e, const Affine& t) {
     const Affine lambda = linear(e.along, t);
     const Span all = range(lambda);
     if (all.hi <= 0) return square(e.from, t);

@@ -104,6 +104,6 @@ inline Affine on_line(double slope, const Span& offset, const Affine& a) {
 inline Affine any_kernel(const Affine&) { return {0.5, 0, 0.5 * (1 + 4 * affine_detail::u)}; }
 
 // Where the foot passes an end of the segment, |v - lambda M|^2 with lambda clamped to [0, 1].
-[[nodiscard]] Affine segment_square(const RayElement& e, const Affine& t);
+[[nodiscard]] Affine segment_square(const RaySkeleton& e, const Affine& t);
 
 }  // namespace ivory::natural

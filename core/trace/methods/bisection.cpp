@@ -14,10 +14,10 @@ namespace {
 using natural::Range;
 using natural::RayElement;
 
-// 3-3: d^2 = r^2 + |C - P|^2 - 2 r |P - C - (N.(P - C)) N|, expanded as printed.
-Range expanded_circle(const RayElement& e, const Range& t) {
-    const Range whole = square(e.from, t) + Range{quick::sqr(e.radius)};
-    return less(whole, quick::scale(2, quick::mul(e.radius, sqrt(square(e.across, t)).x)));
+// The distance as the paper prints it.
+Range printed_square(const RayElement& e, const Range& t) {
+    if (e.collapsed) return square(e.from, t);
+    return with_shape(e.shape, [&]<class S>() { return S::square_as_printed(e, t); });
 }
 
 // The sum of squares of intervals that know nothing of each other, as the paper has it, with the ray
@@ -25,9 +25,7 @@ Range expanded_circle(const RayElement& e, const Range& t) {
 Range natural_extension(const natural::RayField& field, const Range& t) {
     Range sum{field.constant()};
     for (const RayElement& e : field.elements()) {
-        const Range s = !e.bounded                 ? Range{{0.0, infinity<double>}}
-                        : e.shape == Shape::circle ? expanded_circle(e, t)
-                                                   : square(e, t);
+        const Range s = e.bounded ? printed_square(e, t) : Range{{0.0, infinity<double>}};
         sum = sum + times(e.strength, kernel(e.kernel, s));
     }
     return sum;

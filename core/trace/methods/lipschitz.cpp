@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/field/kernel.h"
 
 namespace ivory {
 namespace {
@@ -12,37 +11,10 @@ constexpr double u = unit_roundoff;
 
 double one_norm(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
-// A ball around the skeleton.
-struct Ball {
-    Vec3d center;
-    double radius;  // rounded up
-};
-
-Ball ball_around(const Field& field, std::size_t i) {
-    const Vec3d a = field.a(i);
-    if (field.shape[i] != Shape::segment) return {a, field.radius[i]};
-    const Vec3d center = 0.5 * a + 0.5 * field.b(i);
-    const Vec3d from_a = center - a, from_b = field.b(i) - center;
-    const double square = std::max(dot(from_a, from_a), dot(from_b, from_b));
-    return {center, std::sqrt(square) * (1 + 8 * u) + 1e-150};
-}
-
 }  // namespace
 
 double steepest_beyond(KernelKind kind, double q) {
-    const double s = q * q;
-    switch (kind) {
-        case KernelKind::blinn:
-            if (!(s > 0.5)) return 0.8577638849607070;
-            return 2 * q * exp_minus(s * (1 - 2 * u), 0).hi * (1 + 8 * u) + 1e-300;
-        case KernelKind::nishimura:
-            if (!(q > 1.0 / 3)) return 2;
-            return q < 1 ? 3 * (1 - q) * (1 + 8 * u) : 0;
-        case KernelKind::wyvill:
-            break;
-    }
-    if (!(s > 0.254)) return 1.5834298;
-    return q < 1 ? 4.0 / 9 * q * (1 - s * (1 - 2 * u)) * (11 - 6 * s) * (1 + 32 * u) : 0;
+    return with_kernel(kind, [&]<class K>() { return K::steepest_beyond(q); });
 }
 
 double lipschitz_bound(const Field& field, const ElementList& list, const ScaledRay& ray,
@@ -50,7 +22,8 @@ double lipschitz_bound(const Field& field, const ElementList& list, const Scaled
     const double speed = std::sqrt(dot(ray.direction, ray.direction));
     double sum = 0;
     for (const std::uint32_t i : list.elements) {
-        const Ball ball = ball_around(field, i);
+        const Ball ball =
+            with_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
         const Vec3d away = ball.center - ray.origin;
         const Vec3d moment = cross(away, ray.direction);
         // Each component of the cross product errs by less than 4 u |away| |direction|.

@@ -1,10 +1,6 @@
 // A proved Lipschitz constant of f along a ray. With d_i the distance to skeleton i, |dF_i / dd_i|
 // is at most |b| max |k'(q)| / w over the q that the ray meets, and d_i itself changes by no more
 // than the place does.
-//
-//   |dk/dq|    blinn      2 q exp(-q^2)                falls from q^2 = 1/2 on, sqrt(2/e) there
-//              nishimura  6 q, then 3 (1 - q)          from q = 1/3 on, 2 there
-//              wyvill     4/9 q (1 - s)(11 - 6 s)      from s = (51 - sqrt 1281) / 60 on, s = q^2
 #pragma once
 
 #include "core/field/field.h"

@@ -25,19 +25,7 @@ inline Span range(Plain a) { return Span(a.x); }
 inline Plain times(const Span& s, Plain a) { return {s.lo * a.x}; }
 inline Plain any_kernel(Plain) { return {0.0}; }
 inline Plain kernel(KernelKind kind, Plain s) {
-    switch (kind) {
-        case KernelKind::blinn:
-            return {exp_nearest(-s.x)};
-        case KernelKind::nishimura: {
-            if (s.x >= 1) return {0.0};
-            if (9 * s.x <= 1) return {1 - 3 * s.x};
-            const double rest = 1 - std::sqrt(s.x);
-            return {1.5 * rest * rest};
-        }
-        case KernelKind::wyvill:
-            break;
-    }
-    return {s.x >= 1 ? 0 : (1 - s.x) * (1 - s.x) * (9 - 4 * s.x) / 9};
+    return {with_kernel(kind, [&]<class K>() { return K::plain(s.x); })};
 }
 
 // start + [t] rate. For t >= 0 and a rate of one sign the ends are products of ends; each carries two
@@ -109,12 +97,16 @@ inline Dual times(const Span& s, const Dual& a) {
 }
 inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }
 inline Dual kernel(KernelKind kind, const Dual& s) {
-    const Span k = kernel_over(kind, s.x);
-    if (kind == KernelKind::blinn) return {k, quick::mul(-k, s.slope)};
-    // k' rises with s.
-    const Span dk{kernel_slope_at(kind, std::max(s.x.lo, 0.0)).lo,
-                  kernel_slope_at(kind, s.x.hi).hi};
-    return {k, quick::mul(dk, s.slope)};
+    return with_kernel(kind, [&]<class K>() -> Dual {
+        const Span k = kernel_over<K>(s.x);
+        if constexpr (K::ends) {
+            // k' rises with s.
+            const Span dk{K::slope_at(std::max(s.x.lo, 0.0)).lo, K::slope_at(s.x.hi).hi};
+            return {k, quick::mul(dk, s.slope)};
+        } else {
+            return {k, quick::mul(K::slope_over(k, s.x.lo, s.x.hi), s.slope)};
+        }
+    });
 }
 
 }  // namespace ivory::natural

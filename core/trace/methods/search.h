@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "core/field/kernel.h"
 #include "core/trace/clip.h"
 #include "core/trace/methods/method.h"
 

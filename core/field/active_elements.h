@@ -1,0 +1,44 @@
+// The elements that matter on a stretch of a bundle, with what is known of them there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/field/clusters.h"
+#include "core/field/groups.h"
+#include "core/field/near_elements.h"
+
+namespace ivory {
+
+// Elements that matter on a stretch, sorted by group.
+struct ActiveElements {
+    GroupStarts first{};
+    // Indices into Field. Vectors are read whole, beyond the last element too: 0 stands there.
+    std::vector<std::int64_t> element;
+    std::vector<double> least;    // lower bound of s on the stretch
+    std::vector<double> most;     // upper bound of s, but for points
+    std::vector<double> peak;     // upper bound of k
+    std::vector<double> inverse;  // after `bend`; circle: upper bound of 1 / rho; < 0: rho may be 0
+
+    static constexpr std::size_t room = 16;
+
+    [[nodiscard]] std::size_t size() const { return first[field_groups]; }
+    // A sorted list, of which nothing more is known; `groups`: where they begin, as in
+    // Field::first.
+    void take(const GroupStarts& groups,
+              std::span<const std::uint32_t> elements);
+    // The members of clusters.
+    void take_members(const Clusters& clusters, const ActiveElements& of);
+    // Element i of those, with its bounds, as the last one: there has to be room.
+    void take(const NearElements& near, std::size_t i, double unit);
+    // Keeps nothing.
+    void make_room(std::size_t count);
+    // What is taken from now on is of that group.
+    void begin(std::size_t group) { first[group] = first[field_groups]; }
+    // All groups are there: so many elements.
+    void end(std::size_t count);
+};
+
+}  // namespace ivory

@@ -1,0 +1,119 @@
+// Bounds of the elements' f'' on the stretch that they were bounded on.
+#if defined(IVORY_CORE_FIELD_CURVATURE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef IVORY_CORE_FIELD_CURVATURE_INL
+#undef IVORY_CORE_FIELD_CURVATURE_INL
+#else
+#define IVORY_CORE_FIELD_CURVATURE_INL
+#endif
+
+#include "core/field/seen.inl"
+
+HWY_BEFORE_NAMESPACE();
+namespace ivory {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <class Tag>
+struct BendLanes {
+    V<Tag> rise, fall, kinks;
+};
+
+// Adds the bends of some elements; returns the circles' bound of 1 / rho.
+template <KernelKind kind, class Tag, Shape shape>
+HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                            M<Tag> valid, V<Tag> least, V<Tag> most, V<Tag> peak,
+                            BendLanes<Tag>& sums) {
+    using Real = hn::TFromD<Tag>;
+    using Margin = Margins<Real>;
+    const Tag d;
+    const V<Tag> zero = hn::Zero(d);
+    const V<Tag> error = error_of(d, e.magnitude, s);
+    M<Tag> smooth = valid;
+    V<Tag> inverse = zero, outward = zero;  // 1 / rho, r / rho
+    if constexpr (SkeletonOf<shape>::has_kinks) {
+        inverse = LanesOfShape<shape>::inverse_rho(e, s, error);
+        smooth = hn::And(smooth, hn::Ge(inverse, zero));
+        outward = LanesOfShape<shape>::outward(e, inverse);
+        // no f'' is known of the others
+        const V<Tag> slope = hn::Mul(
+            hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
+            hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more), LanesOf<kind>::slope(d, least, peak)));
+        sums.kinks = hn::Add(sums.kinks, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
+    }
+    const Bend<Tag> bend = LanesOf<kind>::bend(
+        d, LanesOfShape<shape>::bend_range(e, s, error, least, most), peak, outward);
+    const M<Tag> adds = hn::Gt(e.strength, zero);
+    const V<Tag> weight = hn::IfThenElseZero(
+        smooth, hn::Mul(hn::Mul(hn::Abs(e.strength), e.inverse_square), hn::Set(d, Margin::more)));
+    sums.rise = hn::MulAdd(hn::IfThenElse(adds, bend.rise, bend.fall), weight, sums.rise);
+    sums.fall = hn::MulAdd(hn::IfThenElse(adds, bend.fall, bend.rise), weight, sums.fall);
+    return inverse;
+}
+
+template <class Tag>
+HWY_INLINE void add_up(const BendLanes<Tag>& lanes, BendSums& sums) {
+    sums.rise += sum_of(lanes.rise);
+    sums.fall += sum_of(lanes.fall);
+    sums.kinks += sum_of(lanes.kinks);
+}
+
+template <Shape shape, KernelKind kind>
+void bend_group(const Field& field, const Stretch& stretch, double scale, ActiveElements& active,
+                std::size_t first, std::size_t end, BendSums& sums) {
+    const D d;
+    const I di;
+    const Reach<double> reach = reach_of(stretch);
+    BendLanes<D> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const auto e = seen_in_field<shape>(field, stretch, scale, hn::LoadU(di, &active.element[i]));
+        const V<D> inverse =
+            add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &active.least[i]),
+                            hn::LoadU(d, &active.most[i]), hn::LoadU(d, &active.peak[i]), lanes);
+        // of elements that are no circles 0, those of the next group follow
+        hn::StoreU(inverse, d, &active.inverse[i]);
+    }
+    add_up(lanes, sums);
+}
+
+BendSums bend(const Field& field, const Stretch& stretch, double scale, ActiveElements& active) {
+    BendSums sums;
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        const std::size_t first = active.first[group], end = active.first[group + 1];
+        if (first == end) return;
+        bend_group<shape, kind>(field, stretch, scale, active, first, end, sums);
+    });
+    return sums;
+}
+
+template <Shape shape, KernelKind kind>
+void bend_near_group(NearElements& near, const Reach<float>& reach, std::size_t first,
+                     std::size_t end, BendSums& sums) {
+    const F d;
+    BendLanes<F> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const auto e = seen_nearby<shape>(near, reach, i);
+        const V<F> inverse =
+            add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &near.least[i]),
+                            hn::LoadU(d, &near.most[i]), hn::LoadU(d, &near.peak[i]), lanes);
+        hn::StoreU(inverse, d, &near.inverse[i]);
+    }
+    add_up(lanes, sums);
+}
+
+BendSums bend_near(NearElements& near, const NearStretch& stretch) {
+    BendSums sums;
+    const Reach<float> reach = reach_of(stretch, near);
+    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
+        const std::size_t first = near.first[group], end = near.first[group + 1];
+        if (first == end) return;
+        bend_near_group<shape, kind>(near, reach, first, end, sums);
+    });
+    return sums;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace ivory
+HWY_AFTER_NAMESPACE();
+
+#endif

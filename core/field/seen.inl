@@ -1,0 +1,129 @@
+// The elements of a field as the lanes see them from a stretch of a bundle.
+#if defined(IVORY_CORE_FIELD_SEEN_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef IVORY_CORE_FIELD_SEEN_INL
+#undef IVORY_CORE_FIELD_SEEN_INL
+#else
+#define IVORY_CORE_FIELD_SEEN_INL
+#endif
+
+#include <cmath>
+#include <vector>
+
+#include "core/field/bundle_steps.h"
+#include "core/shape/shape_lanes.inl"
+
+HWY_BEFORE_NAMESPACE();
+namespace ivory {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <Shape shape>
+inline constexpr bool has_axis = SkeletonOf<shape>::has_axis;
+// Whether the skeleton is as long as m, and not of the size of `extra`.
+template <Shape shape>
+inline constexpr bool has_length = SkeletonOf<shape>::m_power == 1;
+
+HWY_INLINE Reach<double> reach_of(const Stretch& s) {
+    return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
+}
+
+HWY_INLINE Reach<float> reach_of(const NearStretch& s) {
+    const auto narrow = [](const Vec3d& v) {
+        return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y),
+                           static_cast<float>(v.z)};
+    };
+    const double magnitude = std::fmax(std::abs(s.begin), std::abs(s.end)) + std::abs(s.base.x) +
+                             std::abs(s.base.y) + std::abs(s.base.z);
+    return {narrow(s.axis),
+            narrow(s.base),
+            static_cast<float>(s.begin),
+            static_cast<float>(s.end),
+            static_cast<float>(s.spread * (1 + 0x1p-22)),
+            static_cast<float>(s.t_offset * (1 + 0x1p-22)),
+            static_cast<float>(magnitude * (1 + 0x1p-22))};
+}
+
+// Of elements whose places are off by more than their own rounding.
+HWY_INLINE Reach<float> reach_of(const NearStretch& s, const NearElements& near) {
+    Reach<float> reach = reach_of(s);
+    reach.magnitude += 0x1p-5F * near.magnitude;  // margin of that: 2^-22
+    return reach;
+}
+
+// Elements i of the field by their indices; and those of a list of floats from i on.
+template <Shape shape>
+HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stretch, double scale,
+                                        hn::Vec<I> index) {
+    const D d;
+    const auto column = [&](const std::vector<double>& values)
+                            HWY_ATTR { return hn::GatherIndex(d, values.data(), index); };
+    Seen<D, shape> e;
+    e.v = {hn::Sub(column(field.ax), constant(stretch.origin.x)),
+           hn::Sub(column(field.ay), constant(stretch.origin.y)),
+           hn::Sub(column(field.az), constant(stretch.origin.z))};
+    if constexpr (has_axis<shape>) {
+        e.m = {column(field.mx), column(field.my), column(field.mz)};
+        e.extra = column(field.extra);
+        if constexpr (has_length<shape>) e.size = column(field.length);
+        else e.size = e.extra;
+    }
+    e.strength = hn::Mul(column(field.strength), constant(scale));
+    e.inverse_square = column(field.inverse_square);
+    e.finish();
+    return e;
+}
+
+template <Shape shape>
+HWY_INLINE Seen<F, shape> seen_nearby(const NearElements& near, const Reach<float>& reach,
+                                      std::size_t i) {
+    const F d;
+    const auto column = [&](const std::vector<float>& values)
+                            HWY_ATTR { return hn::LoadU(d, &values[i]); };
+    Seen<F, shape> e;
+    e.v = {hn::Sub(column(near.x), hn::Set(d, reach.base.x)),
+           hn::Sub(column(near.y), hn::Set(d, reach.base.y)),
+           hn::Sub(column(near.z), hn::Set(d, reach.base.z))};
+    if constexpr (has_axis<shape>) {
+        e.m = {column(near.mx), column(near.my), column(near.mz)};
+        e.extra = column(near.extra);
+        if constexpr (has_length<shape>) e.size = column(near.length);
+        else e.size = e.extra;
+    }
+    e.strength = column(near.strength);
+    e.inverse_square = column(near.inverse_square);
+    e.finish();
+    return e;
+}
+
+// Calls visit.operator()<shape, kernel>(group).
+template <class Visit>
+HWY_INLINE void for_all_groups(const Visit& visit) {
+    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>()
+                               HWY_ATTR { visit.template operator()<shape, kind>(group_of(shape, kind)); });
+}
+
+HWY_INLINE double sum_of(V<D> x) { return hn::GetLane(hn::SumOfLanes(D(), x)); }
+
+// Each lane's sum is rounded as often as there are summands; the sum over lanes is not.
+#if HWY_TARGET != HWY_SCALAR
+HWY_INLINE double sum_of(V<F> x) {
+    return sum_of(hn::PromoteTo(D(), hn::LowerHalf(x))) +
+           sum_of(hn::PromoteTo(D(), hn::UpperHalf(hn::Half<F>(), x)));
+}
+#else
+HWY_INLINE double sum_of(V<F> x) { return hn::GetLane(x); }
+#endif
+
+template <class Tag>
+HWY_INLINE std::uint32_t lane_bits(Tag d, M<Tag> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace ivory
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,19 @@
+// One element as the inner loops of packets want it.
+#pragma once
+
+namespace ivory {
+
+// c: the skeleton's first place, relative to the window's. `away` is what leads from the skeleton's
+// nearest point to p; m and extra are what the shape's file says of them.
+template <class Real>
+struct BundleEntry {
+    Real cx, cy, cz;
+    Real inverse_square;  // 1 / w^2, times the kernel's argument_scale
+    Real strength;        // b
+    Real slope;  // 2 b / w^2, with the kernel's slope_sign: F' = slope dk away . d; 0 where `kinked`
+                 // counts it instead
+    Real unused[2];          // entries are written four numbers at a time
+    Real mx, my, mz, extra;  // not of points
+};
+
+}  // namespace ivory

@@ -1,0 +1,92 @@
+// The shapes of skeletons. This is the only list of them; a shape is a file, a line among the
+// #includes, a word in `Shape` and one in `Shapes`.
+
+#include "core/shape/circle.h"
+#include "core/shape/point.h"
+#include "core/shape/segment.h"
+
+#ifndef IVORY_CORE_SHAPE_SHAPES_H
+#define IVORY_CORE_SHAPE_SHAPES_H
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+#include <variant>
+
+#include "core/math/type_list.h"
+
+namespace ivory {
+
+enum class Shape : std::uint8_t { point, segment, circle };
+using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton>;
+
+static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
+static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
+static_assert(index_in<CircleSkeleton, Shapes> == static_cast<std::size_t>(Shape::circle));
+
+// The one alternative that an element has; its index is the Shape.
+using Skeleton = Shapes::Into<std::variant>;
+
+// What the file of a shape has to say. Meanings and units: core/shape/skeleton_values.h, along_ray.h
+// and natural.h; the quick forms for SIMD, which are at the end of the same file, are asked for in
+// core/shape/shape_lanes.inl.
+template <class S>
+concept SkeletonShape = std::equality_comparable<S> &&
+    requires(const S& s, const SkeletonColumns& columns, const SeenFrom& ray,
+             SkeletonAlongRay& along, const natural::Span& span, const natural::Vector& v,
+             natural::RaySkeleton& on_ray, double width) {
+    { S::word } -> std::convertible_to<std::string_view>;      // in scene files
+    { S::label } -> std::convertible_to<std::string_view>;     // in the viewer
+    { S::distance } -> std::convertible_to<std::string_view>;  // the formula of d
+    std::tuple_size<decltype(S::members())>::value;
+    { S::has_kinks } -> std::convertible_to<bool>;
+    { S::has_axis } -> std::convertible_to<bool>;
+    { S::m_power } -> std::convertible_to<int>;
+    { S::extra_power } -> std::convertible_to<int>;
+    { s.middle() } -> std::same_as<Vec3d>;
+    { s.columns() } -> std::same_as<SkeletonColumns>;
+    { S::surroundings(columns) } -> std::same_as<Surroundings>;
+    { S::box(columns) } -> std::same_as<Box3>;
+    { S::ball(columns) } -> std::same_as<Ball>;
+    { S::nearest(columns, columns.a, width) } -> std::same_as<Nearest>;
+    { S::along_ray(columns, width, ray, along) } -> std::same_as<bool>;
+    S::see(columns, span, v, v, v, on_ray);
+};
+
+inline constexpr std::size_t shape_count = Shapes::size;
+
+template <class S>
+inline constexpr Shape shape_of = static_cast<Shape>(index_in<S, Shapes>);
+template <Shape shape>
+using SkeletonOf = TypeAt<static_cast<std::size_t>(shape), Shapes>;
+
+// visit.operator()<S>() of that shape.
+template <class Visit>
+constexpr decltype(auto) with_shape(Shape shape, const Visit& visit) {
+    return with_type(Shapes{}, static_cast<std::size_t>(shape), visit);
+}
+
+// Calls visit(member) for each member of S, in order.
+template <class S, class Visit>
+constexpr void for_members(const Visit& visit) {
+    std::apply([&](const auto&... member) { (visit(member), ...); }, S::members());
+}
+
+// "point", ..., in the order of `Shape`: the words of the file format.
+inline constexpr auto shape_words = []<class... S>(TypeList<S...>) {
+    static_assert((SkeletonShape<S> && ...));
+    return std::array<std::string_view, sizeof...(S)>{S::word...};
+}(Shapes{});
+
+[[nodiscard]] inline Shape shape_of_skeleton(const Skeleton& skeleton) {
+    return static_cast<Shape>(skeleton.index());
+}
+[[nodiscard]] inline const char* shape_word(const Skeleton& skeleton) {
+    return shape_words[skeleton.index()].data();  // a literal: it ends with a 0
+}
+
+}  // namespace ivory
+#endif

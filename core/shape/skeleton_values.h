@@ -1,0 +1,79 @@
+// What the files of the shapes share: the members of a skeleton as files, panels and messages know
+// them, and what the compiled field keeps of one.
+#pragma once
+
+#include <string_view>
+
+#include "core/math/box3.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+enum class MemberKind : unsigned char {
+    place,      // a Vec3d, finite
+    direction,  // a Vec3d, finite and not 0; its length does not matter
+    length,     // a double, finite and at least 0
+};
+
+// One member of a skeleton: its key in scene files, what a panel calls it, what it may be.
+template <class Skeleton, class Value>
+struct Member {
+    std::string_view key, label;
+    MemberKind kind;
+    Value Skeleton::*value;
+};
+
+template <class Skeleton>
+constexpr Member<Skeleton, Vec3d> place(std::string_view key, std::string_view label,
+                                        Vec3d Skeleton::*value) {
+    return {key, label, MemberKind::place, value};
+}
+template <class Skeleton>
+constexpr Member<Skeleton, Vec3d> direction(std::string_view key, std::string_view label,
+                                            Vec3d Skeleton::*value) {
+    return {key, label, MemberKind::direction, value};
+}
+template <class Skeleton>
+constexpr Member<Skeleton, double> length(std::string_view key, std::string_view label,
+                                          double Skeleton::*value) {
+    return {key, label, MemberKind::length, value};
+}
+
+// A skeleton as numbers side by side: one column of the field for each component.
+struct SkeletonColumns {
+    Vec3d a, b;         // as written
+    Vec3d m;            // computed to nearest, for the quick bounds
+    double radius = 0;  // as written
+    double length = 0;  // of m, where it has one that matters
+    double extra = 0;   // what else the quick bounds need
+};
+
+// What a number of that power of lengths has to be multiplied by to be in units.
+template <int power>
+[[nodiscard]] constexpr double unit_factor(double unit) {
+    static_assert(power == -2 || power == 0 || power == 1);
+    return power == -2 ? unit * unit : power == 0 ? 1 : 1 / unit;
+}
+
+// All of a skeleton lies within `radius` of the box; both as written, so that only sums have to be
+// rounded.
+struct Surroundings {
+    Box3 box;
+    double radius = 0;
+};
+
+// A ball that holds the skeleton, its radius rounded up.
+struct Ball {
+    Vec3d center;
+    double radius = 0;
+};
+
+// From the skeleton's nearest point to p, in units of the element's width, and the square s of its
+// length; half the gradient of s is that vector.
+struct Nearest {
+    double s;
+    Vec3d away;
+    bool defined = true;  // false: on a medial axis
+};
+
+}  // namespace ivory
