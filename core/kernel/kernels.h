@@ -76,6 +76,10 @@ inline constexpr auto kernel_words = []<class... K>(TypeList<K...>) {
     return kernel_words[static_cast<std::size_t>(kind)].data();  // a literal: it ends with a 0
 }
 
+[[nodiscard]] constexpr bool kernel_ends(KernelKind kind) {
+    return with_kernel(kind, []<class K>() { return K::ends; });
+}
+
 // k at one double s >= 0, enclosed; 0 <= result <= 1.
 inline Interval<double> kernel_at(KernelKind kind, double s) {
     return with_kernel(kind, [&]<class K>() { return K::at(s); });

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/field/kernel.h"
+#include "core/kernel/kernels.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "core/scene/error.h"
@@ -252,17 +252,9 @@ class Search {
 
     // How far the skeleton of an element reaches along a normal, about.
     [[nodiscard]] Vec3d farthest(std::size_t i, const Vec3d& normal) const {
-        const Vec3d a = field_.a(i) - middle_;
-        if (field_.shape[i] == Shape::segment) {
-            const Vec3d b = field_.b(i) - middle_;
-            return dot(b, normal) > dot(a, normal) ? b : a;
-        }
-        if (field_.shape[i] == Shape::circle) {
-            const Vec3d axis{field_.mx[i], field_.my[i], field_.mz[i]};
-            const Vec3d along = normal - dot(normal, axis) * axis;
-            return length(along) > 0 ? a + field_.radius[i] * unit(along) : a;
-        }
-        return a;
+        return with_shape(field_.shape[i], [&]<class S>() {
+            return S::farthest(field_.columns(i), middle_, normal);
+        });
     }
 
     // Likewise of an element, or the middle of a cluster where there are any.
@@ -283,7 +275,7 @@ class Search {
         const Vec3d& normal = frustum_.normal[side];
         const double normal_length = length(normal), per_length = (1 - slack) / normal_length;
         const double least = share_left_out * field_.threshold / static_cast<double>(field_.size());
-        const double far = far_beyond(least);
+        const Far far = far_beyond(least);
         double inside = std::max(seen_[side], -radius_ * normal_length), outside = reach_[side];
         double left_out = 0;
         std::vector<Behind> behind;
@@ -299,9 +291,8 @@ class Search {
             const double away =
                 (inside - dot(ball.center - middle_, normal)) * per_length - ball.radius - lost_;
             const double s = away > 0 ? away * away * ball.inverse_square * (1 - slack) : 0;
-            const bool is_blinn = ball.kernel == KernelKind::blinn;
-            if (s >= (is_blinn ? far : 1)) {
-                if (is_blinn) left_out += least;
+            if (s >= far[static_cast<std::size_t>(ball.kernel)]) {
+                if (!kernel_ends(ball.kernel)) left_out += least;
                 continue;
             }
             for (std::uint32_t i = ball.first; i < ball.end; ++i) take(i);
@@ -318,9 +309,8 @@ class Search {
                 const double away = (plane - at.farthest) * per_length - lost_;
                 const double q = away > 0 ? away * field_.inverse_width[i] * (1 - slack) : 0;
                 const double s = q * q * (1 - slack);
-                const bool is_blinn = field_.kernel[i] == KernelKind::blinn;
-                if (s >= (is_blinn ? far : 1)) {
-                    if (is_blinn) dropped += least;
+                if (s >= far[static_cast<std::size_t>(field_.kernel[i])]) {
+                    if (!kernel_ends(field_.kernel[i])) dropped += least;
                     continue;
                 }
                 const Behind copy = at;
@@ -483,24 +473,38 @@ class Search {
         cell.value = sum.value - field_.threshold;
     }
 
-    // An s at and beyond which |b| k(s) <= least certainly holds for every element and cluster of a
-    // Blinn kernel; the others end at 1.
-    [[nodiscard]] double far_beyond(double least) const {
-        const double s = std::log(strongest_ / least) + 1e-6;
-        const bool holds =
-            s > 0 && s < 600 && mul_up(strongest_, kernel_at(KernelKind::blinn, s).hi) <= least;
-        return holds ? s : infinity<double>;
+    // For each kernel an s at and beyond which |b| k(s) <= least certainly holds for every element and
+    // cluster; a kernel that ends is 0 there.
+    using Far = std::array<double, kernel_count>;
+    [[nodiscard]] Far far_beyond(double least) const {
+        Far far;
+        for_each_type(Kernels{}, [&]<class K>() {
+            double& of_kernel = far[static_cast<std::size_t>(kind_of<K>)];
+            if constexpr (K::ends) {
+                of_kernel = 1;
+            } else {
+                const double s = K::level(std::log(strongest_ / least)) + 1e-6;
+                const bool holds =
+                    s > 0 && s < K::vanishes && mul_up(strongest_, K::at(s).hi) <= least;
+                of_kernel = holds ? s : infinity<double>;
+            }
+        });
+        return far;
     }
-
     struct Sum {
         double above = 0;      // of upper bounds of the listed F_i
         double magnitude = 0;  // of what was added
         double value = 0;      // of the F_i at the centre
         double least = 0;      // what counts as nothing
-        double far = 0;        // and from which s on a Blinn kernel does
+        Far far{};             // and from which s on
         bool rough = false;    // the cell is so large that the field at its centre tells little
         std::size_t count = 0;
     };
+
+    // Leaves out what is that far away.
+    static void leave_out(KernelKind kernel, const Sum& sum, Cell& cell) {
+        if (!kernel_ends(kernel)) cell.left_out += sum.least;
+    }
 
     // Where nothing carves, the rest can neither lower the bound below T nor f at the centre: it is
     // only listed.
@@ -551,10 +555,9 @@ class Search {
         }
         const double distance = std::sqrt(nearest) * (1 - slack) - ball.radius - lost_;
         const double s = distance > 0 ? distance * distance * ball.inverse_square * (1 - slack) : 0;
-        const bool is_blinn = ball.kernel == KernelKind::blinn;
         ++sum.count;
-        if (s >= (is_blinn ? sum.far : 1)) {
-            if (is_blinn) cell.left_out += sum.least;
+        if (s >= sum.far[static_cast<std::size_t>(ball.kernel)]) {
+            leave_out(ball.kernel, sum, cell);
             return Added::nothing;
         }
         // So small a ball is about a point: good enough for the value at a point.
@@ -579,7 +582,7 @@ class Search {
         const double b = field_.strength[i], per_width = field_.inverse_width[i];
         const Vec3d from = (middle_ - field_.a(i)) + cell.center;
         double nearest = 0, farthest = 0, s = 0;
-        if (field_.shape[i] == Shape::point) {
+        if (!with_shape(field_.shape[i], []<class S>() { return S::has_axis; })) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const double off = std::abs(from[k]);
                 const double beyond = std::max(off - cell.half, 0.0);
@@ -599,9 +602,8 @@ class Search {
         }
         const double near_s = nearest * nearest * (1 - slack);
         ++sum.count;
-        const bool is_blinn = field_.kernel[i] == KernelKind::blinn;
-        if (near_s >= (is_blinn ? sum.far : 1)) {
-            if (is_blinn) cell.left_out += sum.least;
+        if (near_s >= sum.far[static_cast<std::size_t>(field_.kernel[i])]) {
+            leave_out(field_.kernel[i], sum, cell);
             return;
         }
         if (is_settled(sum)) {

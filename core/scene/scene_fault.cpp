@@ -63,20 +63,23 @@ Fault unless_color(std::string_view key, const Color& color) {
     return std::nullopt;
 }
 
-Fault find_fault(const PointSkeleton& point) { return unless_finite("position", point.position); }
-
-Fault find_fault(const SegmentSkeleton& segment) {
-    if (Fault fault = unless_finite("a", segment.a)) return fault;
-    return unless_finite("b", segment.b);
+Fault find_fault(std::string_view key, MemberKind kind, const Vec3d& value) {
+    return kind == MemberKind::direction ? unless_direction(key, value) : unless_finite(key, value);
 }
 
-Fault find_fault(const CircleSkeleton& circle) {
-    if (Fault fault = unless_finite("center", circle.center)) return fault;
-    if (Fault fault = unless_direction("normal", circle.normal)) return fault;
-    if (!(circle.radius >= 0 && std::isfinite(circle.radius))) {
-        return wrong("/radius", "the radius", circle.radius, "0 or greater, and finite");
-    }
-    return std::nullopt;
+Fault find_fault(std::string_view key, MemberKind, double length) {
+    if (length >= 0 && std::isfinite(length)) return std::nullopt;
+    return wrong("/" + std::string(key), "the " + std::string(key), length,
+                 "0 or greater, and finite");
+}
+
+template <class S>
+Fault find_fault(const S& skeleton) {
+    Fault fault;
+    for_members<S>([&](const auto& member) {
+        if (!fault) fault = find_fault(member.key, member.kind, skeleton.*member.value);
+    });
+    return fault;
 }
 
 SceneFault within(const std::string& part, SceneFault fault) {

@@ -13,7 +13,6 @@
 #include "core/scene/json_reader.h"
 #include "core/scene/read_file.h"
 #include "core/scene/scene_fault.h"
-#include "core/scene/skeleton_members.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -36,14 +35,27 @@ constexpr std::array<std::string_view, 4> camera_keys{"position", "target", "up"
 constexpr std::array<std::string_view, 4> light_keys{"direction", "color", "intensity", "attached"};
 constexpr std::array<std::string_view, 7> element_keys{"shape",    "name",  "color",  "kernel",
                                                        "strength", "width", "visible"};
-template <class Shape>
-constexpr auto keys_of_element = joined(skeleton_keys<Shape>, element_keys);
+template <class S>
+constexpr auto skeleton_keys = std::apply(
+    [](const auto&... member) { return std::array<std::string_view, sizeof...(member)>{member.key...}; },
+    S::members());
+template <class S>
+constexpr auto keys_of_element = joined(skeleton_keys<S>, element_keys);
 
-// Those of the format; the first ones, in the order of the alternatives of `Skeleton`, are built.
-constexpr std::array<std::string_view, 6> shapes{"point", "segment", "circle",
-                                                 "disc",  "polygon", "curve"};
-constexpr std::size_t built_shapes = std::variant_size_v<Skeleton>;
-constexpr std::array<std::string_view, 3> kernels{"blinn", "nishimura", "wyvill"};
+// "a point"; no shape's word begins with a vowel.
+template <class S>
+constexpr auto characters_with_article = [] {
+    static_assert(std::string_view("aeiou").find(S::word.front()) == std::string_view::npos);
+    std::array<char, 2 + S::word.size()> text{'a', ' '};
+    std::copy(S::word.begin(), S::word.end(), text.begin() + 2);
+    return text;
+}();
+template <class S>
+constexpr std::string_view word_with_article{characters_with_article<S>.data(),
+                                             characters_with_article<S>.size()};
+
+// The format has these too, as soon as they are in core/shape/shapes.h.
+constexpr std::array<std::string_view, 4> shapes_to_come{"disc", "polygon", "curve", "polyline"};
 constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
 // The kinds of objects that a scene is made of.
@@ -210,7 +222,7 @@ void read(const Node& node, Vec3d& v) {
 }
 
 void read(const Node& node, KernelKind& kernel) {
-    kernel = static_cast<KernelKind>(one_of(node, kernels));
+    kernel = static_cast<KernelKind>(one_of(node, kernel_words));
 }
 
 void read(const Node& node, std::optional<Camera>& camera) {
@@ -234,13 +246,14 @@ void read(const Node& node, Light& light) {
     }
 }
 
-// An element whose shape is that of `Shape`; its name with an article is `name`.
-template <class Shape>
-void read_element(const Node& node, std::string_view name, Element& element) {
-    const ObjectFormat format{name, keys_of_element<Shape>, skeleton_keys<Shape>};
+template <class S>
+void read_element(const Node& node, Element& element) {
+    const ObjectFormat format{word_with_article<S>, keys_of_element<S>, skeleton_keys<S>};
     const Members members(node, format);
-    for_each_member(element.skeleton.emplace<Shape>(),
-                    [&](std::string_view key, auto& value) { read(members.required(key), value); });
+    S& skeleton = element.skeleton.emplace<S>();
+    for_members<S>([&](const auto& member) {
+        read(members.required(member.key), skeleton.*member.value);
+    });
     read_if_there(members, "name", element.name);
     read_if_there(members, "color", element.color);
     read_if_there(members, "kernel", element.kernel);
@@ -252,18 +265,15 @@ void read_element(const Node& node, std::string_view name, Element& element) {
 void read(const Node& node, Element& element) {
     node.must_be(JsonKind::object, "an object with a shape");
     const Node shape = node.required("shape", element_format);
-    switch (one_of(shape, shapes, built_shapes)) {
-        case 0:
-            return read_element<PointSkeleton>(node, "a point", element);
-        case 1:
-            return read_element<SegmentSkeleton>(node, "a segment", element);
-        case 2:
-            return read_element<CircleSkeleton>(node, "a circle", element);
-        default:
-            throw shape.fault("the shape " + in_quotes(shape.value.text()) +
-                              " belongs to the format but is not built yet; use " +
-                              listed(Words(shapes).first(built_shapes), "or"));
+    for (const std::string_view word : shapes_to_come) {
+        if (shape.value.kind() != JsonKind::text || !shape.value.is_text(word)) continue;
+        if (std::find(shape_words.begin(), shape_words.end(), word) != shape_words.end()) break;
+        throw shape.fault("the shape " + in_quotes(word) +
+                          " belongs to the format but is not built yet; use " +
+                          listed(shape_words, "or"));
     }
+    with_shape(static_cast<Shape>(one_of(shape, shape_words)),
+               [&]<class S>() { read_element<S>(node, element); });
 }
 
 template <class Item>

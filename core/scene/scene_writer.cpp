@@ -9,7 +9,6 @@
 #include "core/scene/read_file.h"
 #include "core/scene/scene_fault.h"
 #include "core/scene/scene_json.h"
-#include "core/scene/skeleton_members.h"
 #include "core/scene/text.h"
 #include "core/scene/write_file.h"
 
@@ -72,12 +71,13 @@ void append_members(Members members, const Element& element) {
     static const Element defaults;
     members.add_word("shape", shape_word(element.skeleton));
     if (element.name) members.add("name") += nlohmann::json(*element.name).dump();
-    const auto add_skeleton = [&](const auto& skeleton) {
-        for_each_member(skeleton, [&](std::string_view key, const auto& value) {
-            members.add(key, value);
-        });
-    };
-    std::visit(add_skeleton, element.skeleton);
+    std::visit(
+        [&]<class S>(const S& skeleton) {
+            for_members<S>([&](const auto& member) {
+                members.add(member.key, skeleton.*member.value);
+            });
+        },
+        element.skeleton);
     members.add("color", element.color);
     if (element.kernel != defaults.kernel) {
         members.add_word("kernel", kernel_word(element.kernel));

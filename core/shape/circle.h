@@ -63,6 +63,12 @@ struct CircleSkeleton {
     }
     static Ball ball(const SkeletonColumns& c) { return {c.a, c.radius}; }
 
+    static Vec3d farthest(const SkeletonColumns& c, const Vec3d& from, const Vec3d& direction) {
+        const Vec3d to_center = c.a - from;
+        const Vec3d along = direction - dot(direction, c.m) * c.m;
+        return dot(along, along) > 0 ? to_center + c.radius * unit(along) : to_center;
+    }
+
     // Half the gradient of s is (rho - r) across / rho + h n.
     static Nearest nearest(const SkeletonColumns& c, const Vec3d& from_a, double width) {
         const Vec3d v{from_a.x / width, from_a.y / width, from_a.z / width};

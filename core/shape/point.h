@@ -35,6 +35,11 @@ struct PointSkeleton {
     static Box3 box(const SkeletonColumns& c) { return {c.a, c.a}; }
     static Ball ball(const SkeletonColumns& c) { return {c.a}; }
 
+    // The place of the skeleton that is farthest along a direction, relative to `from`; to nearest.
+    static Vec3d farthest(const SkeletonColumns& c, const Vec3d& from, const Vec3d&) {
+        return c.a - from;
+    }
+
     // From the vector a -> p.
     static Nearest nearest(const SkeletonColumns&, const Vec3d& from_a, double width) {
         const Vec3d v{from_a.x / width, from_a.y / width, from_a.z / width};

@@ -52,6 +52,11 @@ struct SegmentSkeleton {
         return {middle, std::max(std::sqrt(dot(to_a, to_a)), std::sqrt(dot(to_b, to_b))) * more};
     }
 
+    static Vec3d farthest(const SkeletonColumns& c, const Vec3d& from, const Vec3d& direction) {
+        const Vec3d to_a = c.a - from, to_b = c.b - from;
+        return dot(to_b, direction) > dot(to_a, direction) ? to_b : to_a;
+    }
+
     static Nearest nearest(const SkeletonColumns& c, const Vec3d& from_a, double width) {
         const Vec3d v{from_a.x / width, from_a.y / width, from_a.z / width};
         const Vec3d along = c.b - c.a;

@@ -51,6 +51,7 @@ concept SkeletonShape = std::equality_comparable<S> &&
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
     { S::box(columns) } -> std::same_as<Box3>;
     { S::ball(columns) } -> std::same_as<Ball>;
+    { S::farthest(columns, columns.a, columns.a) } -> std::same_as<Vec3d>;
     { S::nearest(columns, columns.a, width) } -> std::same_as<Nearest>;
     { S::along_ray(columns, width, ray, along) } -> std::same_as<bool>;
     S::see(columns, span, v, v, v, on_ray);
