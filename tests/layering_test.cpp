@@ -20,8 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // From the lowest to the highest; "app" itself holds main.cpp.
-constexpr std::array<std::string_view, 12> layers = {
-    "core/math",    "core/interval", "core/scene", "core/field", "core/trace", "core/render",
+constexpr std::array<std::string_view, 14> layers = {
+    "core/math",    "core/interval", "core/kernel", "core/shape", "core/scene", "core/field",
+    "core/trace",   "core/render",
     "app/platform", "app/document",  "app/panels", "app/viewer", "app/cli",    "app",
 };
 

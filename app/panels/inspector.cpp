@@ -67,15 +67,15 @@ void draw_skeleton(ViewerState& state, std::size_t element, const std::string& n
     }
 }
 
-// One of three words, all of them in sight.
+// One of a few words, all of them in sight.
 void draw_kernel(ViewerState& state, std::size_t element, const std::string& name) {
     struct Choice {
         KernelKind kind;
         const char* label;
     };
-    constexpr std::array choices = {Choice{KernelKind::blinn, "Blinn"},
-                                    Choice{KernelKind::nishimura, "Nishimura"},
-                                    Choice{KernelKind::wyvill, "Wyvill"}};
+    constexpr auto choices = []<class... K>(TypeList<K...>) {
+        return std::array{Choice{kind_of<K>, K::label.data()}...};
+    }(Kernels{});
     const Palette& colors = palette(state.theme);
     label(state, "Kernel");
     const KernelKind now = state.document.scene().elements[element].kernel;

@@ -262,7 +262,7 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
         put(e.m.y, kept->my);
         put(e.m.z, kept->mz);
         put(e.extra, kept->extra);
-        if constexpr (shape == Shape::segment) put(e.size, kept->length);
+        if constexpr (has_length<shape>) put(e.size, kept->length);
         put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept->most);
     }
     put(least, kept->least);

@@ -1,5 +1,5 @@
 // The kernels and their derivatives against 256 bits, the seams at s = 1/9 and s = 1 above all.
-#include "core/field/kernel.h"
+#include "core/kernel/kernels.h"
 
 #include <gtest/gtest.h>
 
