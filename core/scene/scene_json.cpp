@@ -265,15 +265,20 @@ void read_element(const Node& node, Element& element) {
 void read(const Node& node, Element& element) {
     node.must_be(JsonKind::object, "an object with a shape");
     const Node shape = node.required("shape", element_format);
-    for (const std::string_view word : shapes_to_come) {
-        if (shape.value.kind() != JsonKind::text || !shape.value.is_text(word)) continue;
-        if (std::find(shape_words.begin(), shape_words.end(), word) != shape_words.end()) break;
-        throw shape.fault("the shape " + in_quotes(word) +
-                          " belongs to the format but is not built yet; use " +
-                          listed(shape_words, "or"));
+    if (shape.value.kind() == JsonKind::text) {
+        for (std::size_t i = 0; i < shape_words.size(); ++i) {
+            if (!shape.value.is_text(shape_words[i])) continue;
+            return with_shape(static_cast<Shape>(i),
+                              [&]<class S>() { read_element<S>(node, element); });
+        }
+        for (const std::string_view word : shapes_to_come) {
+            if (!shape.value.is_text(word)) continue;
+            throw shape.fault("the shape " + in_quotes(word) +
+                              " belongs to the format but is not built yet; use " +
+                              listed(shape_words, "or"));
+        }
     }
-    with_shape(static_cast<Shape>(one_of(shape, shape_words)),
-               [&]<class S>() { read_element<S>(node, element); });
+    throw shape.wrong_kind(listed(shape_words, "or"));
 }
 
 template <class Item>

@@ -8,6 +8,8 @@
 #define IVORY_CORE_SHAPE_SHAPE_LANES_INL
 #endif
 
+#include <utility>
+
 #include "core/kernel/kernel_lanes.inl"
 #include "core/shape/bundle_entry.h"
 #include "core/shape/shapes.h"
@@ -217,18 +219,19 @@ namespace {
 template <Shape shape>
 using LanesOfShape = ShapeLanes<SkeletonOf<shape>>;
 
+template <Shape shape, class Visit, std::size_t... kernel>
+HWY_INLINE void for_kernels(const Visit& visit, std::index_sequence<kernel...>) {
+    (visit.template operator()<shape, static_cast<KernelKind>(kernel)>(), ...);
+}
+template <class Visit, std::size_t... shape>
+HWY_INLINE void for_shapes_and_kernels(const Visit& visit, std::index_sequence<shape...>) {
+    (for_kernels<static_cast<Shape>(shape)>(visit, std::make_index_sequence<kernel_count>()), ...);
+}
+
 // Calls visit.operator()<shape, kind>() for all of them, in the order of their groups.
 template <class Visit>
 HWY_INLINE void for_shapes_and_kernels(const Visit& visit) {
-    const auto kernels = [&]<Shape shape, std::size_t... kernel>(
-                             std::index_sequence<kernel...>) HWY_ATTR {
-        (visit.template operator()<shape, static_cast<KernelKind>(kernel)>(), ...);
-    };
-    [&]<std::size_t... shape>(std::index_sequence<shape...>) HWY_ATTR {
-        (kernels.template operator()<static_cast<Shape>(shape)>(
-             std::make_index_sequence<kernel_count>()),
-         ...);
-    }(std::make_index_sequence<shape_count>());
+    for_shapes_and_kernels(visit, std::make_index_sequence<shape_count>());
 }
 
 }  // namespace

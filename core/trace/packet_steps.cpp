@@ -46,7 +46,8 @@ HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std:
 template <class Counts, class Visit>
 HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
     std::size_t first = 0;
-    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR {
+    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR
+                           __attribute__((always_inline)) {
         const std::uint32_t count = counts[group_of(shape, kind)];
         if (count != 0) visit.template operator()<shape, kind>(first, count);
         first += count;
