@@ -56,6 +56,21 @@ if kill -0 "$viewer" 2>/dev/null; then
 fi
 wait "$viewer"
 
+# A file that is not there: the window opens all the same, and the terminal says it too.
+"$ivory" missing.ivory.json --no-settings 2>missing.err &
+viewer=$!
+pids+=("$viewer")
+for _ in $(seq 100); do
+    if [[ -s missing.err ]]; then break; fi
+    sleep 0.1
+done
+kill "$viewer"
+wait "$viewer" || true
+if [[ $(wc -l <missing.err) != 1 ]] || ! grep -q 'missing.ivory.json: cannot be read' missing.err; then
+    echo "the terminal was told: $(cat missing.err)"
+    exit 1
+fi
+
 python3 - "$scene" <<'PYTHON'
 import json, sys
 before, memory, window = (json.load(open(f)) for f in (sys.argv[1], "memory.ivory.json", "window.ivory.json"))
