@@ -32,9 +32,9 @@ constexpr double least_of_tolerance = 0.4;
 constexpr double least_of_root = 0x1p-40;
 
 // The work is limited by what it looks at, so that it depends on the scene alone.
-constexpr std::size_t most_cells = 8192;
+constexpr std::size_t most_cells = 65536;
 constexpr std::size_t most_evaluations = std::size_t{1} << 16;
-constexpr std::size_t most_evaluations_each = 2;  // and so many more for each element
+constexpr std::size_t most_evaluations_each = 64;  // and so many more for each element
 
 // Elements are bounded together in cells whose half is no less than this part of their ball.
 constexpr double most_of_half = 2;

@@ -195,8 +195,8 @@ TEST(Framing, ItsWorkIsLimited) {
     for (const std::size_t elements : {1, 10, 100, 5000}) {
         const Scene scene = tools::mixed_scene(elements, 11);
         const Framing framing = frame_surface(compile(scene), {{0.4, 0.3, 1}, {0, 0, 0}}, 1.7);
-        EXPECT_LE(framing.cells, 8300u) << elements;
-        EXPECT_LE(framing.element_evaluations, 100000u + 13 * elements) << elements;
+        EXPECT_LE(framing.cells, 65700u) << elements;
+        EXPECT_LE(framing.element_evaluations, 100000u + 80 * elements) << elements;
     }
 }
 
