@@ -2,39 +2,12 @@
 
 #include <cmath>
 
+#include "core/trace/safe_step.h"
+
 namespace ivory {
 namespace {
 
 constexpr double u = unit_roundoff;
-
-// The first zero of a + b x + m x^2 / 2 in [0, width], for a < 0, rounded down; `width` where there
-// is none, 0 where the numbers are too large or too small to tell. With x in units of the width, a
-// term whose square underflows beside |a| >= 1e-100 moves no zero into [0, 1].
-double parabola_step(double a, double b, double m, double width) {
-    b *= width;
-    m = std::max(m * width * width, -1e300);
-    if (!(-a > 1e-100 && -a < 1e150 && std::abs(b) < 1e150 && m < 1e150)) return 0;
-    const double square = b * b - 2 * a * m;
-    double x = 2;  // none in [0, 1]
-    if (b > 0) {
-        // -2 a / (b + root): a larger root only shortens the step. The roundings of b^2 - 2 a m are
-        // of its terms' size.
-        const double enlarged = square + 16 * u * (b * b + std::abs(a * m));
-        if (enlarged >= 0) x = -2 * a / (b + std::sqrt(enlarged));
-    } else if (m > 0) {
-        // (root - b) / m: both terms of the square are positive, so that its relative error stays
-        // below 8 u.
-        x = (std::sqrt(square) - b) / m;
-    }
-    return x >= 1 + 32 * u ? width : x * (1 - 32 * u) * width;
-}
-
-// The first zero of a + b x in [0, width], for a < 0, rounded down.
-double line_step(double a, double b, double width) {
-    if (b <= 0) return width;
-    if (!(b < infinity<double> && a > -infinity<double>)) return 0;
-    return std::min(-a / b * (1 - 8 * u), width);
-}
 
 Interval<double> oriented(const Interval<double>& f, bool inside) { return inside ? -f : f; }
 
