@@ -1,6 +1,6 @@
 #include "core/field/bundle_steps.h"
 
-#include "core/field/bundle.h"
+#include "core/field/window.h"
 #include "core/math/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/field/bundle.h"
+#include "core/field/window.h"
 #include "core/field/places.inl"
 
 HWY_BEFORE_NAMESPACE();

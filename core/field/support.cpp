@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/field/bundle_steps.h"
+#include "core/field/rest.h"
 #include "core/math/direction.h"
 
 namespace ivory {
@@ -61,11 +62,10 @@ double share_of(const Field& field) {
 ElementList list_of(const Field& field, const ElementList& parent, std::size_t candidates,
                     const PeakSums& peaks) {
     ElementList list;
-    const double sums = 1 + static_cast<double>(candidates + 64) * 0x1p-52;
-    list.rest = parent.rest + Interval<double>(-peaks.rest_below * sums, peaks.rest_above * sums);
-    const double slack =
-        static_cast<double>(candidates + 4) * 0x1p-52 * (peaks.magnitude + field.threshold);
-    list.certainly_empty = peaks.above + list.rest.hi + slack < field.threshold;
+    const Rest rest =
+        Rest{parent.rest.hi, -parent.rest.lo}.with(peaks, candidates, 0x1p-52);
+    list.rest = {-rest.below, rest.above};
+    list.certainly_empty = certainly_below(field.threshold, peaks, rest, candidates, 0x1p-52);
     return list;
 }
 
@@ -142,10 +142,9 @@ ElementList reaching_clusters(const Field& field, const ElementList& parent, con
     if (kept.size() * cluster_size < most_tested &&
         peaks.above < most_tested_above * field.threshold) {
         const PeakSums closer = peaks_of_members(field, cone, kept);
-        const double slack = static_cast<double>(kept.size() * cluster_size + 64) * 0x1p-22 *
-                             (closer.magnitude + field.threshold * field.scale);
-        list.certainly_empty =
-            closer.above + list.rest.hi * field.scale + slack < field.threshold * field.scale;
+        const Rest rest{list.rest.hi * field.scale, -list.rest.lo * field.scale};
+        list.certainly_empty = certainly_below(field.threshold * field.scale, closer, rest,
+                                               kept.size() * cluster_size + 60, 0x1p-22);
         if (list.certainly_empty) return list;
     }
     give(kept, list.clusters);

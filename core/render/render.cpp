@@ -16,6 +16,8 @@
 
 #include "core/render/camera_lanes.h"
 #include "core/render/shade_lanes.h"
+#include "core/trace/descent.h"
+#include "core/trace/trace.h"
 
 namespace ivory {
 namespace {
@@ -484,24 +486,8 @@ class FrameJob::Work {
         BundleIsolations& isolations = traced.isolations;
         const Field& field = *picture_.field;
         traced.surfaces.exact = !canvas_.frame.surface.empty();
-        picture_.method->trace_bundle(field, tile.list, traced.rays, picture_.options, isolations,
-                                      wants_surface() ? &traced.surfaces : nullptr, tally.counts);
-        // What the list leaves open may be closed by the elements that it left out.
-        const bool all_were_there = tile.list.rest.lo == 0 && tile.list.rest.hi == 0;
-        std::array<double, pixels_in_tile> again;
-        bool any = false;
-        for (std::size_t k = 0; k < traced.size() && !all_were_there; ++k) {
-            again[k] = infinity<double>;
-            if (isolations.status[k] != Status::unresolved || stopped()) continue;
-            ++tally.counts.skipping.rays_alone;
-            isolations.set(k, picture_.method->isolate(field, all_, traced.rays.ray(k),
-                                                       picture_.options, tally.counts));
-            traced.surfaces.forget(k);
-            if (!wants_surface() || !possibly_hit(isolations.status[k])) continue;
-            again[k] = midpoint(isolations[k].t);
-            any = true;
-        }
-        if (any) find_surface(traced, tile.list, again, tally.counts.stop);
+        trace_bundle(field, tile.list, all_, traced.rays, *picture_.method, picture_.options,
+                     isolations, wants_surface() ? &traced.surfaces : nullptr, tally.counts);
         if (stopped()) return false;
         const Clock::time_point traced_at = Clock::now();
         paint(traced);
@@ -519,7 +505,7 @@ class FrameJob::Work {
         RayBundle& rays = traced.rays;
         rays.part_count = 0;
         const bool in_parts =
-            with_parts && canvas_.tiles[index].list.most_elements() >= BundleField::parts_elements;
+            with_parts && canvas_.tiles[index].list.most_elements() >= Descent::parts_elements;
         const bool is_whole = rect.width() == tile_side && rect.height() == tile_side;
         TileBundles bundles;
         if (in_parts && is_whole) {

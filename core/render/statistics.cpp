@@ -65,8 +65,13 @@ std::string statistics_json(const RenderStatistics& s) {
         {"windows", skipping.windows},
         {"rays",
          {{"in_packets", skipping.rays},
-          {"doubtful_in_float", skipping.rays_doubtful},
+          {"doubtful_in_float", s.counts.climbers[Rung::walk_again]},
           {"alone", skipping.rays_alone}}}};
+    Json& ladder_json = json["ladder"] = Json::object();
+    for (const RungFacts& rung : ladder) {
+        if (rung.rung == Rung::walk || rung.rung == Rung::enclose) continue;
+        ladder_json[std::string(rung.name)] = s.counts.climbers[rung.rung];
+    }
     for (const SkippingName& kind : skipping_names) {
         if (!(s.options.skipping.*kind.member)) json["skipping"]["off"].push_back(kind.name);
     }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/interval/slabs.h"
+
 namespace ivory {
 
 Interval<double> ScaledRay::unscaled(const Interval<double>& t) const {
@@ -24,16 +26,8 @@ ScaledRay scaled(const Ray& ray) {
 
 Interval<double> clip(const ScaledRay& ray, const Box3& box) {
     if (box.empty()) return Interval<double>::empty_set();
-    Interval<double> span{0.0, infinity<double>};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double o = ray.origin[axis], d = ray.direction[axis];
-        if (d == 0) {
-            if (o < box.lo[axis] || o > box.hi[axis]) return Interval<double>::empty_set();
-        } else if (std::abs(d) > 1e-250) {  // smaller ones may have lost digits and bound nothing
-            const Interval<double> slab(box.lo[axis], box.hi[axis]);
-            span = intersection(span, (slab - Interval<double>(o)) / Interval<double>(d));
-        }
-    }
+    // smaller components may have lost digits and bound nothing
+    Interval<double> span = within_slabs(box, ray.origin, ray.direction, 1e-250);
     if (!is_empty(span)) span.hi = next_up(span.hi);
     return span;
 }

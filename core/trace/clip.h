@@ -22,7 +22,7 @@ struct ScaledRay {
 [[nodiscard]] ScaledRay scaled(const Ray& ray);
 
 // The scaled t >= 0 outside of which the ray is outside of `box`: rounded outward, so that the ray
-// is outside at its upper end too. Kay, Kajiya 1986 (slabs). Empty: the ray misses the box.
+// is outside at its upper end too. Empty: the ray misses the box.
 [[nodiscard]] Interval<double> clip(const ScaledRay& ray, const Box3& box);
 
 }  // namespace ivory

@@ -7,7 +7,7 @@
 #endif
 
 #include "core/shape/shape_lanes.inl"
-#include "core/field/bundle.h"
+#include "core/field/window.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {

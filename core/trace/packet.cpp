@@ -44,7 +44,7 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
                                      const Field& field, double limit, BundleSurfaces& surfaces,
                                      Cancellation& stop) {
     if (window.coarse_usable) {
-        const Looked looked = packet_steps().look(window, field, bundle_field_.unit(), limit,
+        const Looked looked = packet_steps().look(window, field, descent_.field().unit(), limit,
                                                   lanes_, part.first, part.end, surfaces, stop);
         if (stop.requested()) return 0;
         if (looked.wanted == 0) return 0;
@@ -68,7 +68,7 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     }
     if (index_.empty()) return found;
     points_.resize(index_.size());
-    const Window& refined = bundle_field_.refined();
+    const Window& refined = descent_.field().refined();
     surfaces.mix(refined.fine.elements());
     packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data(), stop);
     if (stop.requested()) return 0;
@@ -81,130 +81,158 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     return found;
 }
 
+bool PacketTracer::any(const BundlePart& part, Lanes::State state) const {
+    return packet_steps().any(lanes_, state, part.first, part.end);
+}
+
+void PacketTracer::replace(const BundlePart& part, Lanes::State state, Lanes::State by) {
+    std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                 std::int32_t{state}, std::int32_t{by});
+}
+
 std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
                                   const RayBundle& rays, const Settings& settings,
                                   BundleIsolations& isolations, BundleSurfaces* surfaces,
                                   Counts& counts) {
-    if (surfaces != nullptr) surfaces->clear(rays.count);
-    if (!bundle_field_.build(field, list, rays.bundle, settings.tolerance,
-                             settings.skipping.windows, rays.common, &counts.stop)) {
+    const auto leave_all = [&] {
         for (std::size_t k = 0; k < rays.count; ++k) {
             isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
         }
+    };
+    if (surfaces != nullptr) surfaces->clear(rays.count);
+    if (!descent_.build(field, list, rays.bundle, settings.tolerance, settings.skipping.windows,
+                        rays.common, &counts.stop)) {
+        leave_all();
         return 0;
     }
-    const PacketSteps& steps = packet_steps();
     lanes_.t_lo = isolations.t_lo.data();
     lanes_.t_hi = isolations.t_hi.data();
     take(rays, settings.skipping.parts);
     counts.skipping.rays += rays.count;
-    const double T = bundle_field_.threshold(), unit = bundle_field_.unit();
-    const double limit = exact_limit(field, rays.bundle);
-    const auto any = [&](const BundlePart& part, Lanes::State state) {
-        return steps.any(lanes_, state, part.first, part.end);
+    Job job{field, settings, surfaces, exact_limit(field, rays.bundle), counts};
+    descent_.begin(parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
+                   parts_.size() == 1 ? budget + budget_of_part
+                                      : budget + static_cast<int>(parts_.size()) * budget_of_part +
+                                            budget_of_rays);
+    const auto wanted = [&](const BundlePart& part, double, double) {
+        return any(part, Lanes::walking);
     };
     std::size_t found = 0;
-    const BundlePart& all = parts_[0];
-    bundle_field_.for_windows(
-        parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
-        [&](const BundlePart& part, double, double) { return any(part, Lanes::walking); },
-        parts_.size() == 1
-            ? budget + budget_of_part
-            : budget + static_cast<int>(parts_.size()) * budget_of_part + budget_of_rays,
-        [&](Window& window, const BundlePart& part) {
-            if (!window.coarse_usable) {
-                for (std::size_t k = part.first; k < part.end; ++k) {
-                    if (lanes_.state[k] != Lanes::walking) continue;
-                    lanes_.state[k] = Lanes::undecided;
-                    lanes_.t_lo[k] = window.begin;
-                    lanes_.t_hi[k] = infinity<double>;
-                }
-                return any(all, Lanes::walking);
-            }
-            ++counts.skipping.windows;
-            if (!settings.skipping.coarse) {
-                std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
-                             std::int32_t{Lanes::walking}, std::int32_t{Lanes::doubtful});
-            }
-            const Walked walked =
-                steps.walk(window, T, unit, settings.greatest_cell, part.first, part.end, lanes_,
-                           counts.stop);
-            if (counts.stop.requested()) return false;
-            counts.evaluations += walked.steps;
-            counts.element_evaluations +=
-                walked.steps * window.strong.size + walked.close_steps * window.weak.size;
-            if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) {
-                return any(all, Lanes::walking);
-            }
-            bundle_field_.complete(window);
-            const auto enclose_lanes = [&](const Window& in, double left_out, std::size_t first,
-                                           std::size_t end, Lanes::State pinned,
-                                           Lanes::State otherwise) {
-                const std::uint64_t evaluations =
-                    steps.enclose(in, T, unit, settings.greatest_cell, left_out, first, end, pinned,
-                                  otherwise, lanes_, counts.stop);
-                counts.evaluations += evaluations;
-                counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
-            };
-            const auto enclose = [&](const Window& in, double left_out, Lanes::State pinned,
-                                     Lanes::State otherwise) {
-                enclose_lanes(in, left_out, part.first, part.end, pinned, otherwise);
-            };
-            enclose(window, 0, Lanes::hidden, Lanes::hidden);
-            // What the fine list leaves open, with one that leaves out next to nothing.
-            if (any(part, Lanes::hidden)) {
-                std::replace(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
-                             std::int32_t{Lanes::hidden}, std::int32_t{Lanes::candidate});
-                const auto left_out = [](const Window& by) {
-                    return by.fine_bounds.above + by.fine_bounds.below;
-                };
-                const Window& finer = bundle_field_.finer();
-                enclose(finer, left_out(window), Lanes::hidden, Lanes::doubtful);
-                // What rises up to the ray's own piece is the sum of either.
-                const double left_out_by_both = std::max(left_out(window), left_out(finer));
-                for (std::size_t k = part.first; k < part.end; ++k) {
-                    if (lanes_.state[k] != Lanes::hidden) continue;
-                    if (counts.stop.requested()) return false;
-                    // And what rounding leaves open, by the ray itself.
-                    const Interval<double> bracket{lanes_.t_lo[k], lanes_.t_hi[k]};
-                    const double t = midpoint(bracket);
-                    lanes_.state[k] = Lanes::candidate;
-                    lanes_.t[k] = t;
-                    const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
-                    enclose_lanes(bundle_field_.closer(direction, t), left_out_by_both, k, k + 1,
-                                  Lanes::undecided, Lanes::undecided);
-                    if (lanes_.state[k] != Lanes::undecided) continue;
-                    lanes_.t_lo[k] = bracket.lo;
-                    lanes_.t_hi[k] = bracket.hi;
-                }
-            }
-            if (any(part, Lanes::doubtful)) {
-                counts.skipping.rays_doubtful += static_cast<std::uint64_t>(
-                    std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
-                               std::int32_t{Lanes::doubtful}));
-                const Window& refined = bundle_field_.refined();
-                const std::uint64_t again =
-                    steps.walk_again(refined, T, part.first, part.end, lanes_, counts.stop);
-                counts.evaluations += again;
-                counts.element_evaluations += again * refined.fine.size;
-                enclose(refined, 0, Lanes::undecided, Lanes::undecided);
-            }
-            if (counts.stop.requested()) return false;
-            if (surfaces != nullptr) {
-                found += surface_in(window, part, field, limit, *surfaces, counts.stop);
-            }
-            return any(all, Lanes::walking);
-        });
-    counts.skipping.stretches += bundle_field_.stretches();
-    counts.skipping.stretches_ended += bundle_field_.stretches_ended();
-    if (counts.stop.requested()) {
-        for (std::size_t k = 0; k < rays.count; ++k) {
-            isolations.set(k, {Status::unresolved, {0.0, infinity<double>}});
+    while (Window* const window = descent_.next(wanted)) {
+        const BundlePart part = descent_.part();
+        if (!window->coarse_usable) {
+            leave(*window, part);
+        } else if (climb(*window, part, job) && surfaces != nullptr) {
+            found += surface_in(*window, part, field, job.surface_limit, *surfaces, counts.stop);
         }
+        if (counts.stop.requested() || !any(parts_[0], Lanes::walking)) break;
+    }
+    counts.skipping.stretches += descent_.field().stretches();
+    counts.skipping.stretches_ended += descent_.field().stretches_ended();
+    if (counts.stop.requested()) {
+        leave_all();
         return 0;
     }
-    steps.conclude(lanes_, isolations);
+    packet_steps().conclude(lanes_, isolations);
     return found;
+}
+
+// True: there may be hits to be looked at.
+bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
+    const Cancellation& stop = job.counts.stop;
+    ++job.counts.skipping.windows;
+    if (!job.settings.skipping.coarse) replace(part, Lanes::walking, Lanes::doubtful);
+    walk(window, part, job);
+    if (stop.requested()) return false;
+    if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) return false;
+
+    descent_.field().complete(window);
+    enclose(window, part, job);
+    if (any(part, Lanes::hidden)) enclose_more(window, part, job);
+    if (stop.requested()) return false;
+    if (any(part, Lanes::doubtful)) walk_again(part, job);
+    return !stop.requested();
+}
+
+void PacketTracer::walk(const Window& window, const BundlePart& part, Job& job) {
+    const Walked walked = packet_steps().walk(
+        window, descent_.field().threshold(), descent_.field().unit(), job.settings.greatest_cell,
+        part.first, part.end, lanes_, job.counts.stop);
+    job.counts.evaluations += walked.steps;
+    job.counts.element_evaluations +=
+        walked.steps * window.strong.size + walked.close_steps * window.weak.size;
+}
+
+void PacketTracer::enclose_lanes(const Window& in, double left_out, std::size_t first,
+                                 std::size_t end, Lanes::State pinned, Lanes::State otherwise,
+                                 Job& job) {
+    const std::uint64_t evaluations = packet_steps().enclose(
+        in, descent_.field().threshold(), descent_.field().unit(), job.settings.greatest_cell,
+        left_out, first, end, pinned, otherwise, lanes_, job.counts.stop);
+    job.counts.evaluations += evaluations;
+    job.counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
+}
+
+void PacketTracer::enclose(const Window& window, const BundlePart& part, Job& job) {
+    enclose_lanes(window, 0, part.first, part.end, Lanes::hidden, Lanes::hidden, job);
+}
+
+// What the window's own fine list leaves open, with one that leaves out next to nothing.
+void PacketTracer::enclose_more(const Window& window, const BundlePart& part, Job& job) {
+    job.counts.climbers[Rung::enclose_more] += static_cast<std::uint64_t>(
+        std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                   std::int32_t{Lanes::hidden}));
+    replace(part, Lanes::hidden, Lanes::candidate);
+    const auto left_out = [](const Window& by) {
+        return by.fine_bounds.above + by.fine_bounds.below;
+    };
+    const Window& more = descent_.field().finer();
+    enclose_lanes(more, left_out(window), part.first, part.end, Lanes::hidden, Lanes::doubtful,
+                  job);
+    // What rises up to a ray's own piece is the sum of either.
+    about_roots(std::max(left_out(window), left_out(more)), part, job);
+}
+
+// And what rounding leaves open, by the ray itself.
+void PacketTracer::about_roots(double left_out, const BundlePart& part, Job& job) {
+    for (std::size_t k = part.first; k < part.end; ++k) {
+        if (lanes_.state[k] != Lanes::hidden) continue;
+        if (job.counts.stop.requested()) return;
+        ++job.counts.climbers[Rung::about_root];
+        const Interval<double> bracket{lanes_.t_lo[k], lanes_.t_hi[k]};
+        const double t = midpoint(bracket);
+        lanes_.state[k] = Lanes::candidate;
+        lanes_.t[k] = t;
+        const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
+        enclose_lanes(descent_.field().closer(direction, t), left_out, k, k + 1, Lanes::undecided,
+                      Lanes::undecided, job);
+        if (lanes_.state[k] != Lanes::undecided) continue;
+        lanes_.t_lo[k] = bracket.lo;
+        lanes_.t_hi[k] = bracket.hi;
+    }
+}
+
+void PacketTracer::walk_again(const BundlePart& part, Job& job) {
+    Counts& counts = job.counts;
+    counts.climbers[Rung::walk_again] += static_cast<std::uint64_t>(
+        std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
+                   std::int32_t{Lanes::doubtful}));
+    const Window& whole = descent_.field().refined();
+    const std::uint64_t steps =
+        packet_steps().walk_again(whole, descent_.field().threshold(), part.first, part.end,
+                                  lanes_, counts.stop);
+    counts.evaluations += steps;
+    counts.element_evaluations += steps * whole.fine.size;
+    enclose_lanes(whole, 0, part.first, part.end, Lanes::undecided, Lanes::undecided, job);
+}
+
+void PacketTracer::leave(const Window& window, const BundlePart& part) {
+    for (std::size_t k = part.first; k < part.end; ++k) {
+        if (lanes_.state[k] != Lanes::walking) continue;
+        lanes_.state[k] = Lanes::undecided;
+        lanes_.t_lo[k] = window.begin;
+        lanes_.t_hi[k] = infinity<double>;
+    }
 }
 
 void PacketTracer::surface(const Field& field, const ElementList& list, const RayBundle& rays,
@@ -216,7 +244,7 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         surfaces.nx[k] = std::numeric_limits<float>::quiet_NaN();
         if (surfaces.exact) surfaces.points[k].normal.x = nan;
     }
-    if (!bundle_field_.build(field, list, rays.bundle, tolerance, true, rays.common, &stop)) {
+    if (!descent_.build(field, list, rays.bundle, tolerance, true, rays.common, &stop)) {
         return;
     }
     take(rays, true);
@@ -224,17 +252,15 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
         lanes_.t[k] = m[k];
     }
-    bundle_field_.for_windows(
-        parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
-        [&](const BundlePart& part, double t0, double t1) {
-            return std::any_of(m.begin() + part.first, m.begin() + part.end,
-                               [=](double t) { return t >= t0 && t < t1 && t < limit; });
-        },
-        std::numeric_limits<int>::max(),
-        [&](Window& window, const BundlePart& part) {
-            surface_in(window, part, field, limit, surfaces, stop);
-            return !stop.requested();
-        });
+    descent_.begin(parts_, {lanes_.dx, lanes_.dy, lanes_.dz}, std::numeric_limits<int>::max());
+    const auto wanted = [&](const BundlePart& part, double t0, double t1) {
+        return std::any_of(m.begin() + part.first, m.begin() + part.end,
+                           [=](double t) { return t >= t0 && t < t1 && t < limit; });
+    };
+    while (const Window* const window = descent_.next(wanted)) {
+        surface_in(*window, descent_.part(), field, limit, surfaces, stop);
+        if (stop.requested()) break;
+    }
 }
 
 }  // namespace ivory

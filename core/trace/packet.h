@@ -1,4 +1,4 @@
-// Many rays at a time: windows of a bundle (core/field/bundle.h) from front to back, in each of
+// Many rays at a time: windows of a bundle (core/trace/descent.h) from front to back, in each of
 // them safe steps in float and the enclosure of the root in double (core/trace/packet_steps.h).
 //
 // The proof of a hit: f < 0 on every window before, by the sum of upper bounds or by safe steps,
@@ -12,11 +12,11 @@
 #include <span>
 #include <vector>
 
-#include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
+#include "core/trace/descent.h"
 #include "core/trace/packet_steps.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
@@ -47,11 +47,36 @@ class PacketTracer {
                  Cancellation& stop);
 
   private:
+    // What the rungs of the ladder (core/trace/ladder.h) in a window work on.
+    struct Job {
+        const Field& field;
+        const Settings& settings;
+        BundleSurfaces* surfaces;
+        double surface_limit;  // t from which places are not close enough for normals and colours
+        Counts& counts;
+    };
+
     void take(const RayBundle& rays, bool in_parts);
+    [[nodiscard]] bool any(const BundlePart& part, Lanes::State state) const;
+    void replace(const BundlePart& part, Lanes::State state, Lanes::State by);
+
+    // Rungs for the rays of the part in that window. False: stopped on the way.
+    bool climb(Window& window, const BundlePart& part, Job& job);
+    void walk(const Window& window, const BundlePart& part, Job& job);
+    void enclose(const Window& window, const BundlePart& part, Job& job);
+    void enclose_more(const Window& window, const BundlePart& part, Job& job);
+    void about_roots(double left_out, const BundlePart& part, Job& job);
+    void walk_again(const BundlePart& part, Job& job);
+    // All of the part that walk are left to others, from the window on.
+    void leave(const Window& window, const BundlePart& part);
+    // As PacketSteps::enclose.
+    void enclose_lanes(const Window& in, double left_out, std::size_t first, std::size_t end,
+                       Lanes::State pinned, Lanes::State otherwise, Job& job);
+
     std::size_t surface_in(const Window& window, const BundlePart& part, const Field& field,
                            double limit, BundleSurfaces& surfaces, Cancellation& stop);
 
-    BundleField bundle_field_;
+    Descent descent_;
     Lanes lanes_;
     std::vector<BundlePart> parts_;
     std::vector<std::uint32_t> index_;  // of hits in a window, their t and what is found there

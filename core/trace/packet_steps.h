@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/field/bundle.h"
+#include "core/field/window.h"
 #include "core/field/field.h"
 #include "core/interval/interval.h"
 #include "core/math/cancellation.h"

@@ -6,6 +6,7 @@
 #include "core/interval/interval.h"
 #include "core/math/cancellation.h"
 #include "core/math/vec3.h"
+#include "core/trace/ladder.h"
 #include "core/trace/skipping.h"
 
 namespace ivory {
@@ -51,6 +52,7 @@ struct Counts {
     std::uint64_t evaluations = 0;          // pairs of a ray and an interval that were enclosed
     std::uint64_t element_evaluations = 0;  // elements enclosed in them
     SkippingCounts skipping = {};
+    Climbers climbers = {};
     Cancellation stop = {};  // each thread keeps its own
 
     // So many enclosures, of so many elements each. Whether to stop.
@@ -64,6 +66,7 @@ struct Counts {
         evaluations += other.evaluations;
         element_evaluations += other.element_evaluations;
         skipping += other.skipping;
+        climbers += other.climbers;
         return *this;
     }
 };

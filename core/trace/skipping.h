@@ -34,7 +34,6 @@ struct SkippingCounts {
     std::uint64_t stretches = 0, stretches_ended = 0;    // bounded; ended by the sum of peaks
     std::uint64_t windows = 0;                           // in which rays were walked
     std::uint64_t rays = 0;                              // in packets
-    std::uint64_t rays_doubtful = 0;  // of these, not decided in float at the first attempt
     std::uint64_t rays_alone = 0;     // traced one at a time, after a packet or without one
 
     SkippingCounts& operator+=(const SkippingCounts& other) {
@@ -44,7 +43,6 @@ struct SkippingCounts {
         stretches_ended += other.stretches_ended;
         windows += other.windows;
         rays += other.rays;
-        rays_doubtful += other.rays_doubtful;
         rays_alone += other.rays_alone;
         return *this;
     }

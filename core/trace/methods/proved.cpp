@@ -144,11 +144,13 @@ Isolation isolate_from(const Interval<double>& known, const Field& field, const 
     const Vec3d& d = ray.direction;
     const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     if (known.hi < infinity<double>) {
+        ++counts.climbers[Rung::settle];
         const Isolation isolation = settled(known, field, list, ray, options, counts);
         if (isolation.status == Status::hit) return isolation;
     }
     if (options.skipping.lists && list.elements.size() > many && options.tolerance > fine &&
         largest > 1e-100 && largest < 1e100) {
+        ++counts.climbers[Rung::alone_near];
         const ElementList near =
             near_elements(field, list, ray, {0.0, infinity<double>}, options, counts);
         if (near.certainly_empty) return {Status::miss, Interval<double>::empty_set()};
@@ -156,6 +158,7 @@ Isolation isolate_from(const Interval<double>& known, const Field& field, const 
         if (found.isolation.status == Status::miss) return found.isolation;
         if (found.isolation.status == Status::hit && found.one_cell) return found.isolation;
     }
+    ++counts.climbers[Rung::alone_listed];
     return search_from(known.lo, field, list, ray, options, counts).isolation;
 }
 

@@ -1,5 +1,5 @@
 // The bounds of a window against the field itself.
-#include "core/field/bundle.h"
+
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,7 @@
 #include "tests/core/field/stage_check.h"
 #include "tests/reference/reference.h"
 #include "tests/tools/random_scene.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -36,7 +37,7 @@ void for_random_windows(const Visit& visit) {
         const Field field = compile(scene);
         const Vec3d origin = 4.0 * unit(random.in_cube(1));
         const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.02};
-        BundleField along;
+        BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
         const double scale = along.threshold() / field.threshold;
         const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
@@ -111,7 +112,7 @@ TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
         const reference::ReferenceField exact(scene);
         const Vec3d origin = 4.0 * unit(random.in_cube(1));
         const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.005};
-        BundleField along;
+        BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-12));
         const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
         const auto every = [](const BundlePart&, double, double) { return true; };
@@ -169,7 +170,7 @@ TEST(Bundle, FaintElementsAreOffByNoMoreThanTheirBounds) {
         const Field field = compile(scene);
         const Vec3d origin = 6.0 * unit(random.in_cube(1));
         const Bundle bundle{origin, unit(field.a(0) - origin), 0.02};
-        BundleField along;
+        BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
         const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
         const auto every = [](const BundlePart&, double, double) { return true; };
@@ -221,7 +222,7 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
                 z.push_back(d.z);
             }
         }
-        BundleField along;
+        BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), {origin, axis, 0.45}, 1e-6));
         const Directions rays{x.data(), y.data(), z.data()};
         struct Seen {
@@ -264,7 +265,7 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
 // Bundles that are parts of a common one: their windows hold, none is missing where a ray is
 // inside, and they are to the bit what they would be if the others had never come.
 TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
-    BundleField along;
+    BundleWindows along;
     std::uint64_t number = 0, stretches_alone = 0, stretches_shared = 0;
     int inside = 0;
     const auto every = [](const BundlePart&, double, double) { return true; };
@@ -306,7 +307,7 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
             const Vec3d tile_axis = unit(axis + 0.015 * unit(random.in_cube(1)));
             const Bundle bundle{origin, tile_axis, 0.012};
             const std::array parts{BundlePart{.axis = tile_axis, .spread = bundle.spread}};
-            const auto windows_of = [&](BundleField& by, const CommonBundle& in,
+            const auto windows_of = [&](BundleWindows& by, const CommonBundle& in,
                                         const auto& visit) {
                 std::vector<Seen> seen;
                 EXPECT_TRUE(by.build(field, all, bundle, 1e-6, true, &in));
@@ -334,7 +335,7 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
                 }
             });
             stretches_shared += along.stretches();
-            BundleField fresh;
+            BundleWindows fresh;
             const CommonBundle again{common.bundle, &all, ++number};
             EXPECT_TRUE(seen == windows_of(fresh, again, [](Window&) {}));
             stretches_alone += fresh.stretches();

@@ -11,12 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "core/field/bundle.h"
+
 #include "core/field/bundle_steps.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
 #include "tests/tools/random_scene.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -199,7 +200,7 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                 const Vec3d side = unit(cross(axis, random.in_cube(1)));
                 parts.push_back({.axis = unit(axis + 0.029 * side), .spread = 0.01, .end = 1});
             }
-            BundleField along;
+            BundleWindows along;
             ASSERT_TRUE(along.build(field, all_clusters(field), {origin, axis, spread}, 1e-6));
             struct Stretch {
                 double begin, end;
@@ -329,7 +330,7 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
             const std::size_t aim = random.below(field.size());
             const double spread = is_sparse ? 1e-4 : 0.01;
             const Bundle bundle{origin, unit(on_skeleton(field, aim, random) - origin), spread};
-            BundleField along;
+            BundleWindows along;
             ASSERT_TRUE(along.build(field, all_clusters(field), bundle, 1e-6));
             const std::array parts{BundlePart{.axis = bundle.axis, .spread = spread}};
             along.for_windows(

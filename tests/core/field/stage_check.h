@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/field/bundle.h"
+#include "core/field/window.h"
 #include "core/field/field.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"

@@ -21,6 +21,7 @@
 #include "tests/reference/verdict.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -341,7 +342,7 @@ TEST(Packet, GuessesAreAsCloseAsTheCellsAsk) {
             const Field field = compile(tools::mixed_scene(60, seed));
             const auto rays = bundle_around(
                 {{0, 0, 3.9}, unit(0.3 * random.in_cube(1) - Vec3d{0, 0, 3.9})}, 0.02, 256, random);
-            BundleField along;
+            BundleWindows along;
             ASSERT_TRUE(along.build(field, all_elements(field), rays->bundle, 1e-9));
             BundleIsolations found;
             const auto lanes = std::make_unique<Lanes>();

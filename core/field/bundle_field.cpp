@@ -1,7 +1,9 @@
-#include "core/field/bundle.h"
+#include "core/field/bundle_field.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/interval/slabs.h"
 
 namespace ivory {
 namespace {
@@ -36,29 +38,21 @@ constexpr double kink_limit = 0x1p-6, least_length = 0x1p-5;
 // Stretches up to this length are bounded in float, where the field suits it.
 constexpr double longest_in_float = 100;  // units
 
-// A window is made for each part of the rays where they are farther apart than this share of its
-// length.
-constexpr double parts_apart = 1;
-
 }  // namespace
 
 bool BundleField::build(const Field& field, const ElementList& list, const Bundle& bundle,
-                        double tolerance, bool skips_windows, const CommonBundle* common,
-                        Cancellation* stop) {
+                        double tolerance, bool skips_windows, Cancellation* stop) {
     field_ = &field;
     skips_windows_ = skips_windows;
     stop_ = stop;
+    is_stopped_ = false;
     stretches_ = stretches_ended_ = 0;
     origin_ = bundle.origin;
-    span_ = Interval<double>::empty_set();
-    is_shared_ = false;
     if (!field.compact || !(bundle.spread <= 0.5)) return false;
     const Vec3d& o = bundle.origin;
     if (!(std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30)) return false;
-    if (list.certainly_empty || field.box.empty()) return true;
-    span_ = span_of(bundle);
-    if (is_empty(span_)) return true;
 
+    home_ = {.axis = bundle.axis, .spread = bundle.spread};
     scale_ = field.scale;
     threshold_ = field.threshold * scale_;
     unit_ = field.unit;
@@ -66,7 +60,6 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
     refined_cut_ = fine_cut_ * refined_cut_share;
     take_list(list, list_);
-    if (common != nullptr) share(*common);
     return true;
 }
 
@@ -74,7 +67,6 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
 Interval<double> BundleField::span_of(const Bundle& bundle) const {
     // Every ray is in the box at t only if the axis is in the box made larger by t spread.
     const Vec3d& o = bundle.origin;
-    const Vec3d& d = bundle.axis;
     double farthest = 0;
     Box3 box = field_->box;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -88,15 +80,8 @@ Interval<double> BundleField::span_of(const Bundle& bundle) const {
         box.lo[k] -= aside + std::abs(box.lo[k]) * margin;
         box.hi[k] += aside + std::abs(box.hi[k]) * margin;
     }
-    Interval<double> span{0.0, infinity<double>};
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (std::abs(d[k]) > 1e-9) {  // smaller ones bound nothing that matters
-            const Interval<double> slab(box.lo[k], box.hi[k]);
-            span = intersection(span, (slab - Interval<double>(o[k])) / Interval<double>(d[k]));
-        } else if (d[k] == 0 && (o[k] < box.lo[k] || o[k] > box.hi[k])) {
-            span = Interval<double>::empty_set();
-        }
-    }
+    // smaller components bound nothing that matters
+    Interval<double> span = within_slabs(box, o, bundle.axis, 1e-9);
     if (is_empty(span)) return span;
     span.hi = std::min(span.hi * more, farthest * more);
     span.lo = std::max(span.lo * less, 0.0);
@@ -104,63 +89,14 @@ Interval<double> BundleField::span_of(const Bundle& bundle) const {
 }
 
 void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
-    bounded.rest_above = std::max(list.rest.hi, 0.0) * scale_ * more;
-    bounded.rest_below = std::max(-list.rest.lo, 0.0) * scale_ * more;
+    bounded.rest = {std::max(list.rest.hi, 0.0) * scale_ * more,
+                    std::max(-list.rest.lo, 0.0) * scale_ * more};
     bounded.in_clusters = !list.clusters.empty();
     if (bounded.in_clusters) {
         bounded.active.take(field_->clusters.first_of_group, list.clusters);
     } else {
         bounded.active.take(field_->first, list.elements);
     }
-}
-
-void BundleField::share(const CommonBundle& common) {
-    // Few elements are bounded sooner than looked up.
-    if (!(common.bundle.spread <= 0.5) || field_->size() < parts_elements) return;
-    home_ = {.axis = common.bundle.axis, .spread = common.bundle.spread};
-    if (shared_number_ != common.number) {
-        shared_number_ = common.number;
-        shared_count_ = 0;
-        const Interval<double> span = span_of(common.bundle);
-        if (is_empty(span) || is_too_wide_at(span.lo) ||
-            span.hi - span.lo > longest_common * long_stretch * unit_) {
-            return;
-        }
-        take_list(*common.list, shared_list_);
-        add_shared(span.lo, span.hi, 0);
-    }
-    is_shared_ = shared_count_ > 0;
-}
-
-void BundleField::add_shared(double begin, double end, std::size_t parent) {
-    if (shared_.size() == shared_count_) shared_.emplace_back();
-    SharedStretch& stretch = shared_[shared_count_++];
-    stretch.begin = begin;
-    stretch.end = end;
-    stretch.parent = parent;
-    stretch.first_half = 0;
-    stretch.is_bounded = stretch.is_ended = false;
-}
-
-bool BundleField::bound_shared(std::size_t index, bool halves) {
-    SharedStretch& here = shared_[index];
-    if (!here.is_bounded) {
-        const Bounded& parent = index == 0 ? shared_list_ : shared_[here.parent].bounded;
-        const double pad = pad_of(here.begin, here.end);
-        here.is_ended =
-            !bound(parent, here.bounded, home_, here.begin - pad, here.end + pad, halves);
-        here.is_bounded = true;
-    }
-    return !here.is_ended;
-}
-
-void BundleField::halve_shared(std::size_t index) {
-    if (shared_[index].first_half != 0) return;
-    const double begin = shared_[index].begin, end = shared_[index].end;
-    const double middle = 0.5 * (begin + end);
-    shared_[index].first_half = shared_count_;
-    add_shared(begin, middle, index);
-    add_shared(middle, end, index);
 }
 
 Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const {
@@ -192,17 +128,8 @@ PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent
     result.in_clusters = parent.in_clusters && in_clusters;
     const auto step = result.in_clusters ? bundle_steps().bound_clusters : bundle_steps().bound;
     const PeakSums peaks = step(*field_, on, scale_, cut, *candidates, result.active);
-    add_rest(parent, peaks, candidates->size(), 0x1p-52, result);
+    result.rest = parent.rest.with(peaks, candidates->size(), 0x1p-52);
     return peaks;
-}
-
-// What the parent's rest and the `candidates` left out can add, summed with a relative error of u
-// each.
-void BundleField::add_rest(const Bounded& parent, const PeakSums& peaks, std::size_t candidates,
-                           double u, Bounded& result) {
-    const double sums = 1 + static_cast<double>(candidates + 64) * u;
-    result.rest_above = (parent.rest_above + peaks.rest_above * sums) * (1 + 0x1p-50);
-    result.rest_below = (parent.rest_below + peaks.rest_below * sums) * (1 + 0x1p-50);
 }
 
 // Those of the parent's clusters, in float; `result` says relative to what.
@@ -211,15 +138,8 @@ PeakSums BundleField::bound_members(const BundlePart& part, double t0, double t1
     const PeakSums peaks = bundle_steps().bound_members(
         *field_, stretch(home_, t0, t1), result.near_middle,
         near_stretch(part, result.near_middle, t0, t1), cut, parent.active, &result.near);
-    add_rest(parent, peaks, parent.active.size() * cluster_size, u_float, result);
+    result.rest = parent.rest.with(peaks, parent.active.size() * cluster_size, u_float);
     return peaks;
-}
-
-bool BundleField::bound(std::size_t depth, const BundlePart& part, double t0, double t1,
-                        bool in_clusters) {
-    if (bounded_by_depth_.size() <= depth) bounded_by_depth_.resize(depth + 1);
-    const Bounded& parent = depth == 0 ? *root_ : bounded_by_depth_[depth - 1];
-    return bound(parent, bounded_by_depth_[depth], part, t0, t1, in_clusters);
 }
 
 bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0,
@@ -232,7 +152,7 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
         here.near_middle = parent.near_middle;
         peaks = bundle_steps().bound_near(
             parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
-        add_rest(parent, peaks, parent.near.size(), u, here);
+        here.rest = parent.rest.with(peaks, parent.near.size(), u);
         // Places far from what they are relative to have lost digits.
         const double middle = 0.5 * (t0 + t1);
         if (!in_clusters && std::abs(middle - here.near_middle) > long_stretch * unit_) {
@@ -256,11 +176,10 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
             }
         }
     }
-    const double slack = static_cast<double>(here.size() + 4) * u * (peaks.magnitude + threshold_);
     ++stretches_;
     const std::size_t each = parent.in_clusters && !parent.is_near ? cluster_size : 1;
-    if (stop_ != nullptr && stop_->after(parent.size() * each)) left_ = 0;
-    if (skips_windows_ && peaks.above + here.rest_above + slack < threshold_) {
+    if (stop_ != nullptr && stop_->after(parent.size() * each)) is_stopped_ = true;
+    if (skips_windows_ && certainly_below(threshold_, peaks, here.rest, here.size(), u)) {
         ++stretches_ended_;
         return false;
     }
@@ -285,18 +204,10 @@ void BundleField::bend(const Stretch& on, Bounded& bounded) const {
     bounded.kinks = bends.kinks;
 }
 
-bool BundleField::splits(std::size_t depth, double t0, double t1) const {
-    const Bounded& here = bounded_by_depth_[depth];
-    const double L = t1 - t0;
-    return L > least_length * least_width_ &&
-           (std::max(here.rise, here.fall) * L * L > bend_limit * threshold_ ||
-            here.kinks * L > kink_limit * threshold_);
-}
-
-bool BundleField::parts_differ(std::size_t depth, const BundlePart& part, double t0,
-                               double t1) const {
-    return !has_single_rays(part) && bounded_by_depth_[depth].size() >= parts_elements &&
-           t1 * part.spread > parts_apart * (t1 - t0);
+bool BundleField::bends_too_much(const Bounded& bounded, double length) const {
+    return length > least_length * least_width_ &&
+           (std::max(bounded.rise, bounded.fall) * length * length > bend_limit * threshold_ ||
+            bounded.kinks * length > kink_limit * threshold_);
 }
 
 namespace {
@@ -310,15 +221,15 @@ constexpr double compensated_roundings = 3;
 
 // With u the unit roundoff of the stage, u_sums that of the sums in `stage`.
 StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double roundings,
-                         std::size_t active, double threshold, double rest_above, double rest_below,
-                         double unit, double tiny) {
+                         std::size_t active, double threshold, const Rest& rest, double unit,
+                         double tiny) {
     const double n = static_cast<double>(active + 64);
     const double sums = 1 + n * 4 * u_sums;
     const double rounding =
         stage.error * sums + roundings * u * (stage.magnitude + threshold) * sums + tiny;
     StageBounds bounds;
-    bounds.above = (rest_above + stage.rest_above) * sums + rounding;
-    bounds.below = (rest_below + stage.rest_below) * sums + rounding;
+    bounds.above = (rest.above + stage.rest_above) * sums + rounding;
+    bounds.below = (rest.below + stage.rest_below) * sums + rounding;
     // The slope's own sum: each term is at most 2 b / w.
     bounds.slope = (stage.slope + n * u * stage.full_slope) * unit * sums + tiny;
     return bounds;
@@ -326,12 +237,11 @@ StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double
 
 }  // namespace
 
-void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, double t1) {
+Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0, double t1) {
     Window& w = window_;
-    const Bounded& here = bounded_by_depth_[depth];
-    finished_depth_ = depth;
-    finished_ = stretch(part, t0, t1);
-    finished_part_ = part;
+    opened_ = &here;
+    opened_on_ = stretch(part, t0, t1);
+    opened_part_ = part;
     w.begin = t0;
     w.end = t1;
     w.axis = part.axis;
@@ -352,11 +262,11 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
         slope_unit = 1;
         u_sums = 0x1p-24;
     } else {
-        sums = bundle_steps().coarse(*field_, finished_, scale_, cuts, here.active, w);
+        sums = bundle_steps().coarse(*field_, opened_on_, scale_, cuts, here.active, w);
     }
     w.coarse_bounds =
         stage_bounds(sums, 0x1p-24, u_sums, roundings(w.strong.size + w.weak.size), here.size(),
-                     threshold_, here.rest_above, here.rest_below, slope_unit, 1e-30);
+                     threshold_, here.rest, slope_unit, 1e-30);
     const double added = 1 + static_cast<double>(here.size() + 64) * 4 * u_sums;
     w.strong_bounds = {w.coarse_bounds.above + sums.weak_above * added,
                        w.coarse_bounds.below + sums.weak_below * added,
@@ -365,6 +275,13 @@ void BundleField::finish(std::size_t depth, const BundlePart& part, double t0, d
     const double size = (sums.magnitude + threshold_) * unit_ * unit_;
     w.coarse_usable = sums.usable && size * w.rise < 1e30 && size * w.fall < 1e30 &&
                       sums.full_slope * slope_unit < 1e14 && w.strong_bounds.slope < 1e14;
+    return w;
+}
+
+Window& BundleField::open_unknown() {
+    window_.coarse_usable = false;
+    window_.begin = 0;
+    return window_;
 }
 
 // From doubles or, where they are there, floats.
@@ -382,7 +299,7 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
                 bundle_steps().faint(bounded.near, near_on, middle, unit_, cut, w, members_);
             if (w.faint.size > 0) {
                 faint = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings(w.faint.size),
-                                     bounded.near.size(), 0, 0, 0, 1, 1e-30);
+                                     bounded.near.size(), 0, {}, 1, 1e-30);
                 // No slope of theirs is computed.
                 faint.slope = sums.full_slope *
                               (1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22) / unit_;
@@ -397,7 +314,7 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
     const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
     w.fine_bounds = stage_bounds(
         sums, 0x1p-53, 0x1p-53, w.compensated ? compensated_roundings : roundings(w.fine.size),
-        active->size(), threshold_, bounded.rest_above, bounded.rest_below, 1, 1e-280);
+        active->size(), threshold_, bounded.rest, 1, 1e-280);
     w.fine_bounds.above += faint.above;
     w.fine_bounds.below += faint.below;
     w.fine_bounds.slope += faint.slope;
@@ -407,18 +324,18 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
 
 void BundleField::complete(Window& w) {
     if (!w.is_complete)
-        complete(bounded_by_depth_[finished_depth_], finished_part_, finished_,
+        complete(*opened_, opened_part_, opened_on_,
                  fine_cut_ * faint_cut_multiple, w);
 }
 
-void BundleField::take_finished(const Bounded& bounded, double faint_cut, Window& w) {
+void BundleField::take_opened(const Bounded& bounded, double faint_cut, Window& w) {
     w.begin = window_.begin;
     w.middle = window_.middle;
     w.end = window_.end;
     w.axis = window_.axis;
     w.rise = bounded.rise;
     w.fall = bounded.fall;
-    complete(bounded, finished_part_, finished_, faint_cut, w);
+    complete(bounded, opened_part_, opened_on_, faint_cut, w);
 }
 
 const Window& BundleField::refined() {
@@ -426,31 +343,31 @@ const Window& BundleField::refined() {
     is_refined_ = true;
     const Bounded* from = &list_;
     if (list_.in_clusters) {
-        bound(finished_, refined_cut_, list_, true, near_clusters_);
+        bound(opened_on_, refined_cut_, list_, true, near_clusters_);
         from = &near_clusters_;
     }
-    bound(finished_, refined_cut_, *from, false, refined_bounded_);
+    bound(opened_on_, refined_cut_, *from, false, refined_bounded_);
     refined_bounded_.is_near = false;
-    bend(finished_, refined_bounded_);
-    take_finished(refined_bounded_, 0, refined_);
+    bend(opened_on_, refined_bounded_);
+    take_opened(refined_bounded_, 0, refined_);
     return refined_;
 }
 
 // Of clusters the members are bounded in float.
 const Window& BundleField::finer() {
-    if (!(list_.in_clusters && bounded_by_depth_[finished_depth_].is_near)) return refined();
+    if (!(list_.in_clusters && opened_->is_near)) return refined();
     if (is_finer_) return finer_;
     is_finer_ = true;
     Bounded& finer = refined_bounded_;
-    bound(finished_, refined_cut_, list_, true, near_clusters_);
+    bound(opened_on_, refined_cut_, list_, true, near_clusters_);
     finer.is_near = true;
     finer.in_clusters = false;
     finer.near_middle = window_.middle;
-    const double t0 = finished_.begin - pad_of(finished_.begin, finished_.end),
-                 t1 = finished_.end + pad_of(finished_.begin, finished_.end);
-    bound_members(finished_part_, t0, t1, refined_cut_, near_clusters_, finer);
-    bend(finished_part_, t0, t1, finer);
-    take_finished(finer, fine_cut_ * finer_cut_multiple, finer_);
+    const double t0 = opened_on_.begin - pad_of(opened_on_.begin, opened_on_.end),
+                 t1 = opened_on_.end + pad_of(opened_on_.begin, opened_on_.end);
+    bound_members(opened_part_, t0, t1, refined_cut_, near_clusters_, finer);
+    bend(opened_part_, t0, t1, finer);
+    take_opened(finer, fine_cut_ * finer_cut_multiple, finer_);
     return finer_;
 }
 
@@ -474,7 +391,7 @@ const Window& BundleField::closer(const Vec3d& direction, double t) {
         here.near_middle = parent.near_middle;
         const PeakSums peaks = bundle_steps().bound_near(
             parent.near, near_stretch(ray, parent.near_middle, t0, t1), refined_cut_, here.near);
-        add_rest(parent, peaks, parent.near.size(), u_float, here);
+        here.rest = parent.rest.with(peaks, parent.near.size(), u_float);
     } else {
         bound(stretch(ray, t0, t1), refined_cut_, parent, false, here);
     }

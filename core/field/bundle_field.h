@@ -1,0 +1,162 @@
+// The field on a stretch [begin, end] of a bundle's t: what no ray of the bundle can exceed there,
+// found once and shared by all of them. Which stretches there are, and which of them become windows,
+// is the search's business (core/trace/descent.h).
+//
+// For every ray origin + t d of the bundle, |d - axis| <= spread: so its point at t lies within
+// t spread of the axis' point. The distance D to any closed set obeys D^2(x) = |x|^2 + (an infimum
+// of affine functions of x): along a line D^2 - t^2 is concave. Hence, with L = end - begin and
+// y = (t - begin) / L,
+//     D^2(t) >= (1 - y) D^2(begin) + y D^2(end) - y (1 - y) L^2                               (1)
+// for every skeleton, with equality for a point: two distances on the axis bound an element's field
+// on the whole window. From the least s = (D / w)^2 come, for each element,
+//     a bound of |F|; elements below a cut leave the list and join an interval that is kept;
+//     bounds of f'' (for a window free of kinks; else of |f'|), as sup of k'' s'^2 + k' s'',
+//         with s'^2 = 4 x^2 / w^2, x = away . d / w, x^2 <= s, and s'' = 2 / w^2 for a point;
+//         2 a / w^2 for a segment, where x^2 <= a s, a <= 1 (a = 1 about its ends, the squared sine
+//         of the angle between ray and segment along it); 2 / w^2 (1 - r rho'') for a circle,
+//         0 <= rho'' <= 1 / rho;
+//     bounds of the rounding errors of f and f', so that the inner loop carries none of them; where
+//         an element is faint, those of float are small enough even for the fine stage.
+// Lists of large scenes are bounded by clusters (core/field/clusters.h); on shorter stretches the
+// elements are, in float relative to their middle where the field suits that, else in double.
+//
+// Places are relative to the middle of the window on the axis, so that the digits are spent where
+// the surface is, however far the origin: with M = origin + middle axis,
+//     p(t) - M = middle (d - axis) + (t - middle) d,    c - M by core/math/offset.h.            (2)
+// Lengths in the float stage are in units of `unit`, a power of two.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/field/active_elements.h"
+#include "core/field/bundle.h"
+#include "core/field/bundle_steps.h"
+#include "core/field/field.h"
+#include "core/field/near_elements.h"
+#include "core/field/rest.h"
+#include "core/field/support.h"
+#include "core/field/window.h"
+#include "core/interval/interval.h"
+#include "core/math/cancellation.h"
+#include "core/math/vec3.h"
+
+namespace ivory {
+
+// The elements that matter on a stretch, and what the others can add.
+struct Bounded {
+    bool in_clusters = false;  // `active` are clusters
+    bool is_near = false;      // the elements are in `near`, not in `active`
+    ActiveElements active;
+    NearElements near;
+    double near_middle = 0;  // the t on the bundle's axis that `near` is relative to
+    Rest rest;
+    double rise = 0, fall = 0;  // bounds of f'' and of -f'', once they were asked for
+    double kinks = 0;           // upper bound of the |f'| of kinked elements; likewise
+
+    [[nodiscard]] std::size_t size() const { return is_near ? near.size() : active.size(); }
+};
+
+// The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
+class BundleField {
+  public:
+    // `list` has to be valid on the bundle, on whose axis places in float are measured; `tolerance`
+    // decides how small an element has to be to be left out; unless it `skips_windows`, no stretch
+    // ends by the sum of peaks. False: numbers beyond what the bounds are proved for; nothing else
+    // may be called.
+    bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
+               bool skips_windows, Cancellation* stop);
+    // Places in float are measured on another bundle's axis, of the same origin.
+    void measure_on(const BundlePart& home) { home_ = home; }
+
+    // The t outside of which every ray of the bundle is outside of the field's box, and so f < 0;
+    // empty: a miss.
+    [[nodiscard]] Interval<double> span_of(const Bundle& bundle) const;
+
+    // The list, of which nothing is known yet.
+    [[nodiscard]] const Bounded& list() const { return list_; }
+    void take_list(const ElementList& list, Bounded& bounded) const;
+
+    // Of the parent's elements those that matter on [t0, t1] for the part's rays; clusters stay
+    // clusters if that is wanted. False: f < 0 on all of it for every ray.
+    bool bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0, double t1,
+               bool in_clusters);
+    // And its f''.
+    void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
+    // Whether a window so long would need more steps than two of half the length.
+    [[nodiscard]] bool bends_too_much(const Bounded& bounded, double length) const;
+
+    // The window of what was bounded so, which stays where it is.
+    Window& open(const Bounded& bounded, const BundlePart& part, double t0, double t1);
+    // One on which nothing is known, and which begins at 0.
+    Window& open_unknown();
+
+    // The fine stage of the window that is open, if it is not there yet.
+    void complete(Window& window);
+
+    // The window that is open, with a fine stage that leaves out next to nothing and bounds of f''
+    // for it. No coarse stage; `refined` has no faint entries either.
+    const Window& refined();
+    const Window& finer();
+
+    // Likewise a piece of that window about t, for one of its rays alone: rounding is bounded there
+    // by what the field is there. Good until the next one.
+    const Window& closer(const Vec3d& direction, double t);
+
+    // Float cannot name the ends of a stretch: what is bounded is so much longer.
+    static double pad_of(double t0, double t1) { return 0x1p-20 * (t1 - t0); }
+    // Of the greatest width, or nearly.
+    [[nodiscard]] bool is_long(double t0, double t1) const {
+        return t1 - t0 > long_stretch * unit_;
+    }
+    static constexpr double long_stretch = 4;  // units
+
+    // Whether the stop has been seen since `build`.
+    [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+    // Bounded since `build`, and how many of them were ended by the sum of peaks.
+    [[nodiscard]] std::uint64_t stretches() const { return stretches_; }
+    [[nodiscard]] std::uint64_t stretches_ended() const { return stretches_ended_; }
+
+    [[nodiscard]] std::size_t size() const { return field_->size(); }
+    [[nodiscard]] double unit() const { return unit_; }
+    // T, scaled by the power of two that all strengths are scaled by.
+    [[nodiscard]] double threshold() const { return threshold_; }
+
+  private:
+    [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
+    [[nodiscard]] NearStretch near_stretch(const BundlePart& part, double middle, double t0,
+                                           double t1) const;
+    // Of the parent's those with |F| above `cut`; the others join what they could add.
+    PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
+                   Bounded& result);
+    PeakSums bound_members(const BundlePart& part, double t0, double t1, double cut,
+                           const Bounded& parent, Bounded& result);
+    void bend(const Stretch& on, Bounded& bounded) const;
+    void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
+                  double faint_cut, Window& window);
+    void take_opened(const Bounded& bounded, double faint_cut, Window& window);
+
+    const Field* field_ = nullptr;
+    Vec3d origin_;
+    BundlePart home_;
+    Bounded list_;
+    ActiveElements members_;  // of clusters, or of a window with a fine stage
+    Bounded near_clusters_;
+
+    const Bounded* opened_ = nullptr;  // what the window is of
+    Stretch opened_on_;
+    BundlePart opened_part_;
+    Window window_;
+    Bounded refined_bounded_, closer_bounded_;
+    Window refined_, finer_, closer_;
+    bool is_refined_ = false, is_finer_ = false;  // those are of the window
+
+    double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
+    double fine_cut_ = 0, refined_cut_ = 0;
+    Cancellation* stop_ = nullptr;
+    bool is_stopped_ = false;
+    bool skips_windows_ = true;
+    std::uint64_t stretches_ = 0, stretches_ended_ = 0;
+};
+
+}  // namespace ivory

@@ -1,0 +1,71 @@
+// A window [begin, end] of a bundle's t, ready for the inner loops: f'' and all rounding errors are
+// bounded on it, for all of its rays at once, so that the loops carry none of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/field/groups.h"
+#include "core/math/vec3.h"
+#include "core/shape/bundle_entry.h"
+
+namespace ivory {
+
+// What bounds the sums of one stage, in units of its own: f = sum - T.
+struct StageBounds {
+    double above = 0, below = 0;  // f <= computed + above, f >= computed - below
+    double slope = 0;             // |g' - computed|, g the sum over the fine entries
+};
+
+// The elements that a stage adds up, sorted by group.
+template <class Real>
+struct StageEntries {
+    std::array<std::uint32_t, field_groups> count{};
+    // Longer than there are entries: the memory is kept.
+    std::vector<BundleEntry<Real>> entry;
+    std::vector<std::uint32_t> element;  // index into Field
+    std::size_t size = 0;
+
+    [[nodiscard]] std::span<const std::uint32_t> elements() const { return {element.data(), size}; }
+    void clear() {
+        size = 0;
+        count.fill(0);
+    }
+    // For so many more.
+    void make_room(std::size_t more) {
+        if (entry.size() >= size + more) return;
+        entry.resize(2 * (size + more));
+        element.resize(2 * (size + more));
+    }
+};
+
+// One window, ready for the inner loops.
+struct Window {
+    double begin = 0, middle = 0, end = 0;  // t
+    Vec3d axis;                             // of the bundle, or of the part it is made for
+    float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
+
+    // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per square of a scene
+    // unit.
+    double rise = 0, fall = 0;
+
+    // p - c with p relative to the middle. The strong entries alone tell f < 0 where the surface is
+    // far enough.
+    StageEntries<float> strong, weak;
+    StageBounds strong_bounds, coarse_bounds;  // of the strong ones, of both; per unit
+    bool coarse_usable = false;
+
+    // Once `complete` has been called for this window:
+    bool is_complete = false;
+    StageEntries<double> fine;  // likewise, in scene units
+    StageEntries<float> faint;  // those of them that float is good enough for, as in `weak`
+    StageBounds fine_bounds;    // of both, the slope computed of the first; per scene unit
+    bool fine_usable = false;
+    // `fine` has to be added up without losing what the sums are rounded by (Knuth's two-sum).
+    bool compensated = false;
+};
+
+}  // namespace ivory
