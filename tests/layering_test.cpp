@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // From the lowest to the highest; "app" itself holds main.cpp.
-constexpr std::array<std::string_view, 14> layers = {
+constexpr std::array<std::string_view, 15> layers = {
     "core/math",    "core/interval", "core/kernel", "core/shape", "core/scene", "core/field",
     "core/trace",   "core/render",
-    "app/platform", "app/document",  "app/panels", "app/viewer", "app/cli",    "app",
+    "app/platform", "app/document",  "app/shape",  "app/panels", "app/viewer", "app/cli",    "app",
 };
 
 struct Include {

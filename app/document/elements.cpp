@@ -1,8 +1,6 @@
 #include "app/document/elements.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string_view>
@@ -11,26 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "app/document/tidy.h"
-#include "core/math/direction.h"
 #include "core/scene/error.h"
 #include "core/scene/text.h"
 
 namespace ivory {
 
 namespace {
-
-// Linear; told apart by hue and by lightness, so that neighbours in the list differ to every eye.
-constexpr std::array<Color, 8> palette = {{
-    {0.90, 0.30, 0.05},
-    {0.08, 0.38, 0.85},
-    {0.93, 0.68, 0.10},
-    {0.05, 0.55, 0.35},
-    {0.75, 0.12, 0.35},
-    {0.35, 0.75, 0.90},
-    {0.40, 0.20, 0.70},
-    {0.62, 0.78, 0.18},
-}};
 
 // "ring 2" -> "ring": the part before a number at its end.
 std::string_view stem(std::string_view name) {
@@ -64,33 +48,7 @@ Scene with_distinct_names(Scene scene) {
     return scene;
 }
 
-void include(Box3& box, const Vec3d& place, double margin) {
-    const Vec3d all{margin, margin, margin};
-    box.include({place - all, place + all});
-}
-
 }  // namespace
-
-Element new_element(ElementShape shape, Vec3d place, double size, std::size_t elements_before) {
-    const int exponent = exponent_above(size / 100);
-    const Vec3d at{tidy(place.x, exponent), tidy(place.y, exponent), tidy(place.z, exponent)};
-    Element element;
-    switch (shape) {
-        case ElementShape::point:
-            element.skeleton = PointSkeleton{at};
-            break;
-        case ElementShape::segment:
-            element.skeleton = SegmentSkeleton{{tidy(at.x - size, exponent), at.y, at.z},
-                                               {tidy(at.x + size, exponent), at.y, at.z}};
-            break;
-        case ElementShape::circle:
-            element.skeleton = CircleSkeleton{at, {0, 0, 1}, tidy(1.5 * size, exponent)};
-            break;
-    }
-    element.color = palette[elements_before % palette.size()];
-    element.width = size;
-    return element;
-}
 
 Scene with_element(Scene scene, Element element) {
     scene.elements.push_back(std::move(element));
@@ -135,23 +93,17 @@ Scene with_name(Scene scene, std::size_t element, const std::string& name) {
 }
 
 Box3 box_around(const Element& element) {
-    Box3 box;
-    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton))
-        include(box, point->position, element.width);
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        include(box, segment->a, element.width);
-        include(box, segment->b, element.width);
-    }
-    if (const auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
-        // A circle of unit normal n reaches r sqrt(1 - n_k^2) along axis k.
-        const Vec3d n = unit(circle->normal);
-        const auto extent = [&](double n_k) {
-            return circle->radius * std::sqrt(std::max(0.0, 1 - n_k * n_k)) + element.width;
-        };
-        const Vec3d half{extent(n.x), extent(n.y), extent(n.z)};
-        box.include({circle->center - half, circle->center + half});
-    }
-    return box;
+    return with_shape(shape_of_skeleton(element.skeleton), [&]<class S>() {
+        const SkeletonColumns columns = std::get<S>(element.skeleton).columns();
+        Box3 box;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            Vec3d up;
+            up[axis] = 1;
+            box.lo[axis] = S::farthest(columns, {}, -up)[axis] - element.width;
+            box.hi[axis] = S::farthest(columns, {}, up)[axis] + element.width;
+        }
+        return box;
+    });
 }
 
 }  // namespace ivory

@@ -3,22 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <string>
 
 #include "core/math/box3.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
-
-enum class ElementShape : std::uint8_t { point, segment, circle };
-
-// A new element around a place of the scene, `size` being its width: a segment of twice that
-// length, a circle of 1.5 times that radius. Its coordinates are multiples of a power of ten near
-// size / 50, and its colour differs from those of the elements before it.
-[[nodiscard]] Element new_element(ElementShape shape, Vec3d place, double size,
-                                  std::size_t elements_before);
 
 // At the end of the list.
 [[nodiscard]] Scene with_element(Scene scene, Element element);

@@ -9,6 +9,7 @@
 #include "app/panels/fields.h"
 #include "app/panels/files.h"
 #include "app/panels/panels.h"
+#include "app/shape/shapes.h"
 #include "core/field/field.h"
 #include "core/render/framing.h"
 #include "core/scene/error.h"
@@ -245,7 +246,7 @@ std::filesystem::path free_screenshot_path(const ViewerState& state) {
     }
 }
 
-void add_element(ViewerState& state, ElementShape shape) {
+void add_element(ViewerState& state, Shape shape) {
     Document& document = state.document;
     const std::vector<Element>& elements = document.scene().elements;
     // as wide as what is there already

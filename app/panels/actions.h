@@ -69,7 +69,7 @@ void run(ViewerState& state, Action action);
 [[nodiscard]] std::filesystem::path free_screenshot_path(const ViewerState& state);
 
 // A new element where the orbit has its centre, selected.
-void add_element(ViewerState& state, ElementShape shape);
+void add_element(ViewerState& state, Shape shape);
 // The element goes to that place of the list; selected or not it stays so.
 void move_element(ViewerState& state, std::size_t element, std::size_t to);
 void set_visible(ViewerState& state, std::size_t element, bool visible);

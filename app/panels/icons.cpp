@@ -4,6 +4,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "app/shape/shapes.h"
+
 namespace ivory {
 
 namespace {
@@ -93,20 +95,26 @@ void turn_back(Sketch& s, float side) {
 
 }  // namespace
 
+void draw_icon(ImDrawList& list, Shape shape, ImVec2 middle, float side, ImU32 color) {
+    Sketch s(list, middle, side, color);
+    for (const Stroke& stroke : strokes_of(shape)) {
+        switch (stroke.kind) {
+            case Stroke::Kind::line:
+                s.line(stroke.x0, stroke.y0, stroke.x1, stroke.y1);
+                break;
+            case Stroke::Kind::circle:
+                s.circle(stroke.x0, stroke.y0, stroke.radius);
+                break;
+            case Stroke::Kind::disc:
+                s.disc(stroke.x0, stroke.y0, stroke.radius);
+                break;
+        }
+    }
+}
+
 void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 color) {
     Sketch s(list, middle, side, color);
     switch (icon) {
-        case Icon::point:
-            s.disc(0, 0, 0.42f);
-            return;
-        case Icon::segment:
-            s.line(-0.65f, 0.5f, 0.65f, -0.5f);
-            s.disc(-0.68f, 0.52f, 0.26f);
-            s.disc(0.68f, -0.52f, 0.26f);
-            return;
-        case Icon::circle:
-            s.circle(0, 0, 0.75f);
-            return;
         case Icon::eye:
             s.lids();
             s.disc(0, 0, 0.3f);

@@ -5,12 +5,11 @@
 
 #include <cstdint>
 
+#include "core/shape/shapes.h"
+
 namespace ivory {
 
 enum class Icon : std::uint8_t {
-    point,
-    segment,
-    circle,
     eye,
     eye_closed,
     trash,
@@ -30,5 +29,6 @@ enum class Icon : std::uint8_t {
 
 // Within the square of that side around the middle.
 void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 color);
+void draw_icon(ImDrawList& list, Shape shape, ImVec2 middle, float side, ImU32 color);
 
 }  // namespace ivory

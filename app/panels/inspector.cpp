@@ -11,6 +11,7 @@
 #include "app/panels/fields.h"
 #include "app/panels/parts.h"
 #include "app/panels/theme.h"
+#include "app/shape/shapes.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -25,46 +26,43 @@ double step_in_scene(const ViewerState& state) {
     return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
 }
 
-// A field of the selected element's skeleton.
-template <class Shape>
-void skeleton_vector(ViewerState& state, const char* name, const char* text,
-                     const std::string& what, std::size_t element, Vec3d Shape::*member,
-                     double step) {
-    label(state, text);
-    const Vec3d value = std::get<Shape>(state.document.scene().elements[element].skeleton).*member;
-    vector_fields(state, std::string("element.") + name, what, value, step,
+// The field of a member of the selected element's skeleton.
+template <class S>
+void draw_member(ViewerState& state, std::size_t element, const Member<S, Vec3d>& member,
+                 const std::string& what, double step) {
+    const Vec3d value =
+        std::get<S>(state.document.scene().elements[element].skeleton).*member.value;
+    vector_fields(state, "element." + std::string(member.key), what, value,
+                  member.kind == MemberKind::direction ? 0.01 : step,
                   [=](Scene& scene, const Vec3d& changed) {
-                      std::get<Shape>(scene.elements[element].skeleton).*member = changed;
+                      std::get<S>(scene.elements[element].skeleton).*member.value = changed;
                   });
+}
+template <class S>
+void draw_member(ViewerState& state, std::size_t element, const Member<S, double>& member,
+                 const std::string& what, double step) {
+    number_field(state,
+                 {.id = "element." + std::string(member.key),
+                  .what = what,
+                  .value = std::get<S>(state.document.scene().elements[element].skeleton).*
+                           member.value,
+                  .step = step,
+                  .least = 0},
+                 field_width(), [=](Scene& scene, double changed) {
+                     std::get<S>(scene.elements[element].skeleton).*member.value = changed;
+                 });
 }
 
 void draw_skeleton(ViewerState& state, std::size_t element, const std::string& name) {
-    const Skeleton skeleton = state.document.scene().elements[element].skeleton;
     const double step = step_in_scene(state);
-    if (std::holds_alternative<PointSkeleton>(skeleton)) {
-        skeleton_vector(state, "position", "Position", "Move " + name, element,
-                        &PointSkeleton::position, step);
-    } else if (std::holds_alternative<SegmentSkeleton>(skeleton)) {
-        skeleton_vector(state, "a", "End a", "Move end a of " + name, element, &SegmentSkeleton::a,
-                        step);
-        skeleton_vector(state, "b", "End b", "Move end b of " + name, element, &SegmentSkeleton::b,
-                        step);
-    } else if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
-        skeleton_vector(state, "center", "Centre", "Move " + name, element, &CircleSkeleton::center,
-                        step);
-        skeleton_vector(state, "normal", "Normal", "Tilt " + name, element, &CircleSkeleton::normal,
-                        0.01);
-        label(state, "Radius");
-        number_field(state,
-                     {.id = "element.radius",
-                      .what = "Change radius of " + name,
-                      .value = circle->radius,
-                      .step = step,
-                      .least = 0},
-                     field_width(), [=](Scene& scene, double radius) {
-                         std::get<CircleSkeleton>(scene.elements[element].skeleton).radius = radius;
-                     });
-    }
+    const Shape shape = shape_of_skeleton(state.document.scene().elements[element].skeleton);
+    with_shape(shape, [&]<class S>() {
+        for_members<S>([&](const auto& member) {
+            label(state, member.label.data());  // a literal: it ends with a 0
+            draw_member(state, element, member,
+                        change_name(grip_kind(member.kind), part_name(member), name), step);
+        });
+    });
 }
 
 // One of a few words, all of them in sight.
@@ -174,9 +172,9 @@ void draw_inspector(ViewerState& state) {
         return;
     }
     const Element& element = state.document.scene().elements[*selected];
-    const std::string shape = shape_word(element.skeleton);
-    section(state,
-            (std::string(1, static_cast<char>(shape[0] - 'a' + 'A')) + shape.substr(1)).c_str());
+    section(state, with_shape(shape_of_skeleton(element.skeleton), []<class S>() {
+                return S::label.data();  // a literal, too
+            }));
     draw_element(state, *selected);
 }
 

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/panels/actions.h"
 #include "app/panels/fields.h"
 #include "app/panels/parts.h"
 #include "app/panels/theme.h"
+#include "app/shape/shapes.h"
 #include "core/render/shade.h"
 #include "core/scene/text.h"
 
@@ -21,39 +23,39 @@ namespace {
 constexpr double row_height = 28;  // pixels at scale 1
 constexpr const char* dragged_row = "row";
 
-Icon shape_icon(const Skeleton& skeleton) {
-    if (std::holds_alternative<PointSkeleton>(skeleton)) return Icon::point;
-    if (std::holds_alternative<SegmentSkeleton>(skeleton)) return Icon::segment;
-    return Icon::circle;
-}
-
 // A button that adds: the shape's sign and its name.
-void add_button(ViewerState& state, const char* id, const char* label, Icon icon,
-                ElementShape shape, float width) {
+void add_button(ViewerState& state, Shape shape, float width) {
+    const auto [word, label] = with_shape(
+        shape, []<class S>() { return std::pair{std::string(S::word), std::string(S::label)}; });
     const Palette& colors = palette(state.theme);
-    const bool clicked = text_button(state, id, "", width);
+    const bool clicked = text_button(state, "add." + word, "", width);
     const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
-    tooltip((std::string("Add a ") + shape_word(new_element(shape, {}, 1, 0).skeleton)).c_str());
+    tooltip(("Add " + std::string(with_article(shape))).c_str());
     const float side = px(state, 11), gap = px(state, 6), middle = 0.5f * (lo.y + hi.y);
-    const ImVec2 text = ImGui::CalcTextSize(label);
+    const ImVec2 text = ImGui::CalcTextSize(label.c_str());
     const float x = std::floor(0.5f * (lo.x + hi.x - side - gap - text.x));
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    draw_icon(list, icon, {x + 0.5f * side, middle}, side, packed(colors.accent));
-    list.AddText({x + side + gap, std::floor(middle - 0.5f * text.y)}, packed(colors.text), label);
+    draw_icon(list, shape, {x + 0.5f * side, middle}, side, packed(colors.accent));
+    list.AddText({x + side + gap, std::floor(middle - 0.5f * text.y)}, packed(colors.text),
+                 label.c_str());
     if (clicked) add_element(state, shape);
 }
 
+// In rows of three; the middle column takes the longer names, the last one what is left.
 void draw_add_buttons(ViewerState& state) {
+    constexpr std::size_t columns = 3;
     const float spacing = px(state, 4);
-    const float width = std::floor((field_width() - 2 * spacing) / 3);
+    const float width = std::floor((field_width() - 2 * spacing) / columns);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         {px(state, 4), ImGui::GetStyle().FramePadding.y});
-    add_button(state, "add.point", "Point", Icon::point, ElementShape::point, width - px(state, 8));
-    ImGui::SameLine(0, spacing);
-    add_button(state, "add.segment", "Segment", Icon::segment, ElementShape::segment,
-               width + px(state, 16));
-    ImGui::SameLine(0, spacing);
-    add_button(state, "add.circle", "Circle", Icon::circle, ElementShape::circle, field_width());
+    for (std::size_t i = 0; i < shape_count; ++i) {
+        const std::size_t column = i % columns;
+        if (column > 0) ImGui::SameLine(0, spacing);
+        add_button(state, static_cast<Shape>(i),
+                   column == 0   ? width - px(state, 8)
+                   : column == 1 ? width + px(state, 16)
+                                 : field_width());
+    }
     ImGui::PopStyleVar();
 }
 
@@ -111,7 +113,7 @@ void draw_row(ViewerState& state, std::size_t row, float width) {
                                                          static_cast<float>(c.g) / 255,
                                                          static_cast<float>(c.b) / 255, alpha});
     list.AddCircleFilled({at.x + px(state, 14), middle}, px(state, 5.5), swatch);
-    draw_icon(list, shape_icon(element.skeleton), {at.x + px(state, 34), middle}, px(state, 12),
+    draw_icon(list, shape_of_skeleton(element.skeleton), {at.x + px(state, 34), middle}, px(state, 12),
               packed(colors.quiet, alpha));
     const float text_left = at.x + px(state, 48);
     const std::string whole_name = shown_text(state, printable(name, 200));
@@ -182,7 +184,7 @@ void draw_rows(ViewerState& state, float list_height) {
     const std::size_t count = state.document.scene().elements.size();
     if (count == 0) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette(state.theme).quiet);
-        ImGui::TextWrapped("An empty scene. Add a point, a segment or a circle to begin.");
+        ImGui::TextWrapped("An empty scene. Add %s to begin.", one_of_all_shapes().c_str());
         ImGui::PopStyleColor();
     }
     scroll_to_selected(state, height);

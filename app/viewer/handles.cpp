@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "app/viewer/handle_motion.h"
+#include "app/shape/shapes.h"
 #include "app/viewer/picking.h"
 #include "core/scene/scene_fault.h"
 
@@ -48,13 +48,6 @@ WindowPoint free_place(const std::vector<Handle>& before, WindowPoint seen,
     return seen;
 }
 
-std::string drag_name(const std::string& handle, const std::string& element) {
-    if (handle == "normal") return "Tilt " + element;
-    if (handle == "radius") return "Change radius of " + element;
-    if (handle == "a" || handle == "b") return "Move end " + handle + " of " + element;
-    return "Move " + element;
-}
-
 std::optional<int> axis_of(Key key) {
     if (key == Key::x) return 0;
     if (key == Key::y) return 1;
@@ -70,14 +63,15 @@ bool cancels(const KeyPress& press) {
     return press.key == Key::escape || (press.key == Key::z && with.control && !with.shift);
 }
 
-// What grips_of is to go by: nothing where the normal's own length serves.
+// The length of arrow to go by: nothing where the normal's own length serves.
 std::optional<double> arrow_of(const ViewerState& state, std::size_t element) {
     const auto& kept = state.arrow;
-    const auto* circle =
-        std::get_if<CircleSkeleton>(&state.document.scene().elements[element].skeleton);
-    if (!kept || circle == nullptr || kept->element != element || kept->normal != circle->normal)
-        return std::nullopt;
-    return kept->length;
+    if (!kept || kept->element != element) return std::nullopt;
+    const HandView view{state.projection(), state.scale};
+    for (const Grip& grip : grips_of(view, state.document.scene().elements[element]))
+        if (grip.kind == GripKind::direction && std::get<Vec3d>(grip.value) == kept->normal)
+            return kept->length;
+    return std::nullopt;
 }
 
 void set_camera(ViewerState& state, const Camera& camera) {
@@ -92,15 +86,14 @@ std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
     std::vector<Handle> handles;
     const Scene& scene = state.document.scene();
     if (element >= scene.elements.size()) return handles;
-    const Projection view = state.projection();
-    for (Grip& grip : grips_of(view, scene.elements[element].skeleton, state.scale,
-                               arrow_of(state, element))) {
-        const auto in_view = view.project(grip.place);
+    const HandView view{state.projection(), state.scale, arrow_of(state, element)};
+    for (Grip& grip : grips_of(view, scene.elements[element])) {
+        const auto in_view = view.projection.project(grip.place);
         if (!in_view) continue;
         const WindowPoint seen{in_view->x + state.viewport.x, in_view->y + state.viewport.y};
         if (!state.viewport.contains(seen)) continue;
         const WindowPoint at = free_place(handles, seen, state.viewport, state.scale);
-        handles.push_back({element, std::move(grip.name), at, seen, grip.place});
+        handles.push_back({std::move(grip), element, at, seen});
     }
     return handles;
 }
@@ -192,10 +185,11 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     // What was typed into a field may just have been taken over: the handle is where it is now.
     for (const Handle& handle : handles_of(state, grabbed_->element))
         if (handle.name == grabbed_->name) grabbed_ = handle;
-    start_ = scene.elements[grabbed_->element].skeleton;
-    if (const auto* circle = std::get_if<CircleSkeleton>(&start_)) {
-        const Vec3d& n = circle->normal;
-        arrow_ = arrow_of(state, grabbed_->element).value_or(std::hypot(n.x, n.y, n.z));
+    start_ = scene.elements[grabbed_->element];
+    arrow_ = arrow_of(state, grabbed_->element);
+    if (grabbed_->kind == GripKind::direction && !arrow_) {
+        const auto& n = std::get<Vec3d>(grabbed_->value);
+        arrow_ = std::hypot(n.x, n.y, n.z);
     }
     grabbed_from_ = grabbed_->place;
     grabbed_at_ = grabbed_->at;
@@ -203,7 +197,8 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     round_ = false;
     axis_.reset();
     does_ = Does::drag;
-    state.document.begin_drag(drag_name(grabbed_->name, element_names(scene)[grabbed_->element]));
+    state.document.begin_drag(change_name(grabbed_->kind, grabbed_->part,
+                                          element_names(scene)[grabbed_->element]));
 }
 
 void ViewportMouse::move(ViewerState& state, const Input& input) {
@@ -253,34 +248,26 @@ void ViewportMouse::drag(ViewerState& state, const Input& input) {
     const double share = input.modifiers.shift ? fine : 1;
     dx_ += share * (input.mouse.x - last_.x);
     dy_ += share * (input.mouse.y - last_.y);
-    const Projection view = state.projection();
-    const auto skeleton =
-        moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_}, state.scale, arrow_);
-    if (!skeleton) return;
-    Scene scene = state.document.scene();
-    Element& element = scene.elements[grabbed_->element];
-    element.skeleton = *skeleton;
-    if (find_fault(element)) return;  // a normal of length 0, a place beyond all doubles
+    const HandView view{state.projection(), state.scale, arrow_};
+    auto moved = moved_by(view, start_, grabbed_->name, {dx_, dy_, axis_, round_});
+    if (!moved) return;
+    if (find_fault(*moved)) return;  // a normal of length 0, a place beyond all doubles
 
-    grabbed_->place = place_of(view, *skeleton, state.scale);
+    for (Grip& grip : grips_of(view, *moved))
+        if (grip.name == grabbed_->name) static_cast<Grip&>(*grabbed_) = std::move(grip);
     // what was moved aside stays so far beside its place
-    const auto seen = view.project(grabbed_->place), seen_before = view.project(grabbed_from_);
+    const auto seen = view.projection.project(grabbed_->place),
+               seen_before = view.projection.project(grabbed_from_);
     if (seen && seen_before) {
         grabbed_->seen = {seen->x + state.viewport.x, seen->y + state.viewport.y};
         grabbed_->at = {grabbed_at_.x + seen->x - seen_before->x,
                         grabbed_at_.y + seen->y - seen_before->y};
     }
-    if (const auto* circle = std::get_if<CircleSkeleton>(&*skeleton);
-        circle != nullptr && grabbed_->name == "normal")
-        state.arrow = KeptArrow{grabbed_->element, circle->normal, arrow_};
+    if (grabbed_->kind == GripKind::direction)
+        state.arrow = KeptArrow{grabbed_->element, std::get<Vec3d>(grabbed_->value), *arrow_};
+    Scene scene = state.document.scene();
+    scene.elements[grabbed_->element] = std::move(*moved);
     state.document.drag_to(std::move(scene));
-}
-
-Vec3d ViewportMouse::place_of(const Projection& view, const Skeleton& skeleton,
-                              double scale) const {
-    for (const Grip& grip : grips_of(view, skeleton, scale, arrow_))
-        if (grip.name == grabbed_->name) return grip.place;
-    return grabbed_->place;
 }
 
 void ViewportMouse::release(ViewerState& state) {

@@ -5,24 +5,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "app/document/orbit.h"
 #include "app/panels/viewer_state.h"
 #include "app/platform/input.h"
+#include "app/shape/shape_in_hand.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
 
-// One degree of freedom to grab. Names: `position`; `a`, `b`, `middle`; `center`, `normal`,
-// `radius`.
-struct Handle {
+// One degree of freedom to grab.
+struct Handle : Grip {
     std::size_t element = 0;
-    std::string name;
     WindowPoint at;    // in the window, frame-buffer pixels; within the viewport
     WindowPoint seen;  // where its place in the scene is seen: `at`, unless it was moved aside
-    Vec3d place;       // in the scene
 };
 
 // Pixels at scale 1 around a handle within which it can be grabbed; handles stand twice that apart.
@@ -69,8 +66,6 @@ class ViewportMouse {
     void hover(const ViewerState& state, const Input& input);
     void begin_drag(ViewerState& state);
     void drag(ViewerState& state, const Input& input);
-    [[nodiscard]] Vec3d place_of(const Projection& view, const Skeleton& skeleton,
-                                 double scale) const;
     void let_go();
     void click(ViewerState& state);
     void center_orbit(ViewerState& state) const;
@@ -86,12 +81,12 @@ class ViewportMouse {
     bool clicked_before_ = false;           // the last press was a click's
     bool again_ = false;                    // this one makes it a double click
 
-    Skeleton start_;  // of the drag
+    Element start_;  // of the drag
     Vec3d grabbed_from_;
     WindowPoint grabbed_at_;  // the handle's, in the window
     double dx_ = 0, dy_ = 0;  // of the drag, pixels; with Shift fewer than the pointer's
     bool round_ = false;
-    double arrow_ = 1;  // the length that a normal's arrow goes by
+    std::optional<double> arrow_;  // the length that a normal's arrow goes by
 };
 
 }  // namespace ivory

@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "app/viewer/handle_motion.h"
-#include "app/viewer/outlines.h"
+#include "app/shape/shapes.h"
+#include "core/kernel/kernels.h"
 #include "core/render/shade.h"
 #include "core/scene/text.h"
 
@@ -84,22 +84,24 @@ class Pen {
 
     void skeleton(const Element& element, bool selected) {
         const ImU32 color = selected ? selected_color : line_color(element);
-        const std::vector<Vec3d> line = skeleton_line(element.skeleton);
-        if (line.size() == 1) {
-            dot(line.front(), color, selected);
-            return;
+        const SkeletonLines drawn = skeleton_lines(element);
+        for (const SkeletonLine& line : drawn.lines) {
+            if (line.size() == 1) {
+                dot(line.front(), color, selected);
+                continue;
+            }
+            run_.clear();
+            pending_ = false;
+            for (std::size_t i = 0; i + 1 < line.size(); ++i)
+                pieces(line[i], line[i + 1], color, selected);
+            flush(color, selected);
         }
-        run_.clear();
-        pending_ = false;
-        for (std::size_t i = 0; i + 1 < line.size(); ++i)
-            pieces(line[i], line[i + 1], color, selected);
-        flush(color, selected);
-        if (line.size() == 2 && !selected)
-            for (const Vec3d& end : line) dot(end, color, selected);
+        if (selected) return;
+        for (const Vec3d& place : drawn.dots) dot(place, color, selected);
     }
 
     // A closed line of the picture.
-    void ring(const std::vector<WindowPoint>& line, bool dashed) {
+    void ring(const PictureLine& line, bool dashed) {
         points_.clear();
         for (const WindowPoint& p : line)
             points_.push_back(vec({p.x + state_.viewport.x, p.y + state_.viewport.y}));
@@ -193,6 +195,22 @@ class Pen {
     bool pending_ = false;  // its last point is too near to the one before to stay
 };
 
+// How many widths from the skeleton the element alone reaches the threshold, F_i = T, to about 1e-12;
+// -1 where its field stays below T everywhere.
+double iso_widths(const Element& element, double threshold) {
+    const auto field = [&](double q) {
+        return element.strength * kernel_at(element.kernel, q * q).lo;
+    };
+    if (!(field(0) >= threshold)) return -1;
+    double inside = 0, outside = 1;
+    while (outside < 64 && field(outside) >= threshold) outside *= 2;
+    for (int step = 0; step < 50; ++step) {
+        const double middle = 0.5 * (inside + outside);
+        (field(middle) >= threshold ? inside : outside) = middle;
+    }
+    return inside;
+}
+
 void draw_skeletons(const ViewerState& state, Pen& pen) {
     const Scene& scene = state.document.scene();
     const auto selected = state.document.selected();
@@ -203,10 +221,9 @@ void draw_skeletons(const ViewerState& state, Pen& pen) {
     if (!selected) return;
     const Element& element = scene.elements[*selected];
     // Alone it is seen where F_i = T; one too weak for that, or carving, is hinted at by its width.
-    const double distance = iso_distance(element, scene.threshold);
-    for (const auto& line :
-         tube_outline(pen.view(), element.skeleton, distance > 0 ? distance : element.width))
-        pen.ring(line, !(distance > 0) || !element.visible);
+    const double widths = iso_widths(element, scene.threshold);
+    for (const PictureLine& line : outline_of(pen.view(), element, widths > 0 ? widths : 1))
+        pen.ring(line, !(widths > 0) || !element.visible);
     pen.skeleton(element, true);
 }
 
@@ -220,15 +237,13 @@ void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle,
     if (std::hypot(handle.at.x - handle.seen.x, handle.at.y - handle.seen.y) > 1)
         list.AddLine(at, vec(handle.seen), with_alpha(handle_color, 0.7f), pen.px(1));
 
-    const bool square = handle.name == "middle" || handle.name == "center";
-    const bool diamond = handle.name == "radius";
-    if (square) {
+    if (handle.kind == GripKind::whole) {
         const float half = 0.88f * radius;
         list.AddRectFilled({at.x - half - border, at.y - half - border},
                            {at.x + half + border, at.y + half + border}, border_color, pen.px(2.5));
         list.AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half}, fill,
                            pen.px(1.5));
-    } else if (diamond) {
+    } else if (handle.kind == GripKind::length) {
         const float half = 1.2f * radius;
         list.AddNgonFilled(at, half + border * 1.3f, border_color, 4);
         list.AddNgonFilled(at, half, fill, 4);
@@ -236,22 +251,21 @@ void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle,
         list.AddCircleFilled(at, radius + border, border_color);
         list.AddCircleFilled(at, radius, fill);
     }
-    if (handle.name == "normal" || handle.name == "position" || handle.name == "a" ||
-        handle.name == "b") {
+    if (handle.kind == GripKind::place || handle.kind == GripKind::direction) {
         // its element's colour in the middle
         const Rgba8 c = to_srgb(state.document.scene().elements[handle.element].color);
         list.AddCircleFilled(at, 0.45f * radius, IM_COL32(c.r, c.g, c.b, 255));
     }
 }
 
-// From the middle of a circle to its normal's and its radius' handle.
+// From a handle to those that stand out from it.
 void draw_arms(const Pen& pen, const std::vector<Handle>& handles, ImDrawList& list) {
-    const auto center = std::find_if(handles.begin(), handles.end(),
-                                     [](const Handle& handle) { return handle.name == "center"; });
-    if (center == handles.end()) return;
     for (const Handle& handle : handles) {
-        if (handle.name != "normal" && handle.name != "radius") continue;
-        const ImVec2 a = vec(center->seen), b = vec(handle.seen);
+        const auto foot =
+            std::find_if(handles.begin(), handles.end(),
+                         [&](const Handle& other) { return other.name == handle.arm; });
+        if (foot == handles.end()) continue;
+        const ImVec2 a = vec(foot->seen), b = vec(handle.seen);
         list.AddLine(a, b, with_alpha(border_color, 0.6f), pen.px(3.4));
         list.AddLine(a, b, with_alpha(handle_color, 0.85f), pen.px(1.4));
     }
@@ -283,21 +297,19 @@ std::string short_number(double value, double pixel) {
     return number_text(std::round(value * power) / power + 0.0);
 }
 
-std::string drag_label(const ViewerState& state, const ViewportMouse& mouse, const Pen& pen) {
+std::string drag_label(const ViewportMouse& mouse, const Pen& pen) {
     const Handle& handle = *mouse.grabbed();
-    const Skeleton& skeleton = state.document.scene().elements[handle.element].skeleton;
     const double pixel = pen.view().length_of_pixel(handle.place);
-    const auto* circle = std::get_if<CircleSkeleton>(&skeleton);
-    if (circle != nullptr && handle.name == "radius")
-        return "radius " + short_number(circle->radius, pixel);
-    const bool is_normal = circle != nullptr && handle.name == "normal";
-    const Vec3d value = is_normal ? circle->normal : handle.place;
+    if (const auto* length = std::get_if<double>(&handle.value))
+        return handle.part + " " + short_number(*length, pixel);
+    const bool is_direction = handle.kind == GripKind::direction;
+    const auto& value = std::get<Vec3d>(handle.value);
     if (const auto axis = mouse.locked_axis()) {
         const auto k = static_cast<std::size_t>(*axis);
         const double by = handle.place[k] - mouse.grabbed_from()[k];
         const std::string change = short_number(by, pixel);
         return std::string(1, "XYZ"[k]) + "  " + short_number(value[k], pixel) +
-               (is_normal ? "" : "  (" + std::string(by >= 0 ? "+" : "") + change + ")");
+               (is_direction ? "" : "  (" + std::string(by >= 0 ? "+" : "") + change + ")");
     }
     return short_number(value.x, pixel) + ",  " + short_number(value.y, pixel) + ",  " +
            short_number(value.z, pixel);
@@ -350,7 +362,7 @@ void draw_overlay(const ViewerState& state, const ViewportMouse& mouse, ImDrawLi
         if (handle.name != grabbed.name) draw_handle(state, pen, handle, false, false, list);
     draw_handle(state, pen, grabbed, false, true, list);
     if (state.document.dragging())
-        draw_label(state, pen, drag_label(state, mouse, pen), grabbed.at, list);
+        draw_label(state, pen, drag_label(mouse, pen), grabbed.at, list);
 }
 
 }  // namespace ivory

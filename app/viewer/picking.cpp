@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/viewer/outlines.h"
+#include "app/shape/shapes.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
 #include "core/field/surface.h"
@@ -47,17 +47,19 @@ std::optional<Picked> pick_skeleton(const Scene& scene, const Projection& view, 
     double least = radius;
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         if (!scene.elements[i].visible) continue;
-        std::optional<WindowPoint> before;
-        for (const Vec3d& place : skeleton_line(scene.elements[i].skeleton)) {
-            const auto seen = view.project(place);
-            if (seen) {
-                const double distance = distance_to_line(at, before.value_or(*seen), *seen);
-                if (distance <= least) {
-                    least = distance;
-                    nearest = Picked{i, std::nullopt};
+        for (const SkeletonLine& line : skeleton_lines(scene.elements[i]).lines) {
+            std::optional<WindowPoint> before;
+            for (const Vec3d& place : line) {
+                const auto seen = view.project(place);
+                if (seen) {
+                    const double distance = distance_to_line(at, before.value_or(*seen), *seen);
+                    if (distance <= least) {
+                        least = distance;
+                        nearest = Picked{i, std::nullopt};
+                    }
                 }
+                before = seen;
             }
-            before = seen;
         }
     }
     return nearest;

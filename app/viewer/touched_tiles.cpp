@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <numbers>
 #include <span>
-#include <variant>
 
+#include "app/shape/shapes.h"
 #include "app/viewer/same_picture.h"
 #include "core/math/direction.h"
 #include "core/render/tiles.h"
@@ -17,59 +17,23 @@ namespace {
 
 constexpr double visible_share = 1e-6;    // of the threshold
 constexpr std::size_t most_changed = 16;  // elements: beyond, all tiles are traced anew
-constexpr int most_balls = 24;            // along one skeleton
-
-struct Reached {
-    Vec3d center;
-    double radius;
-};
 
 double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-// Distance from the skeleton beyond which |F| <= share T.
+// How many widths from the skeleton |F| <= share T begins.
 double reach(const Element& element, double threshold) {
-    return with_kernel(element.kernel, [&]<class K>() {
+    return with_kernel(element.kernel, [&]<class K>() -> double {
         if constexpr (K::ends) {
-            return element.width;
+            return 1;
         } else {
             const double ratio = std::abs(element.strength) / (visible_share * threshold);
-            return ratio <= 1 ? 0 : element.width * std::sqrt(K::level(std::log(ratio)));
+            return ratio <= 1 ? 0 : std::sqrt(K::level(std::log(ratio)));
         }
     });
 }
 
-// Balls of that reach along a piece of the skeleton of that length, no farther apart than the
-// reach: with half the distance added to their radii they cover all points that are within reach of
-// it.
-template <class Place>
-void cover(double skeleton_length, double radius, const Place& place, std::vector<Reached>& balls) {
-    const double wanted = radius > 0 ? std::ceil(skeleton_length / radius) : most_balls;
-    const int pieces = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_balls)));
-    for (int i = 0; i < pieces; ++i)
-        balls.push_back({place((i + 0.5) / pieces), radius + 0.5 * skeleton_length / pieces});
-}
-
-void cover(const Element& element, double threshold, std::vector<Reached>& balls) {
-    if (!element.visible) return;
-    const double radius = reach(element, threshold);
-    if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-        balls.push_back({point->position, radius});
-    } else if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        const Vec3d along = segment->b - segment->a;
-        cover(
-            length(along), radius, [&](double x) { return segment->a + x * along; }, balls);
-    } else {
-        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
-        const Vec3d n = unit(circle.normal);
-        const Vec3d aside = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-        const Vec3d x_axis = unit(cross(n, aside)), y_axis = cross(n, x_axis);
-        const auto place = [&](double turn) {
-            const double angle = 2 * std::numbers::pi * turn;
-            return circle.center +
-                   circle.radius * (std::cos(angle) * x_axis + std::sin(angle) * y_axis);
-        };
-        cover(2 * std::numbers::pi * circle.radius, radius, place, balls);
-    }
+void cover(const Element& element, double threshold, std::vector<Ball>& balls) {
+    if (element.visible) cover_element(element, reach(element, threshold), balls);
 }
 
 // What is left of each list without the elements that both begin and both end with.
@@ -123,12 +87,12 @@ std::optional<std::vector<std::uint8_t>> touched_tiles(const Scene& before, cons
     if (is_moved(changed)) return std::vector<std::uint8_t>(tiles.size(), 0);
     if (changed.before.size() + changed.after.size() > most_changed) return std::nullopt;
 
-    std::vector<Reached> balls;
+    std::vector<Ball> balls;
     for (const Element& element : changed.before) cover(element, before.threshold, balls);
     for (const Element& element : changed.after) cover(element, after.threshold, balls);
 
     std::vector<std::uint8_t> touched(tiles.size(), 0);
-    for (const Reached& ball : balls) {
+    for (const Ball& ball : balls) {
         const Vec3d to_center = ball.center - eye;
         const double distance = length(to_center);
         if (!(distance > ball.radius)) return std::nullopt;  // the eye is in it

@@ -27,7 +27,7 @@ struct CircleSkeleton {
     static constexpr std::string_view label = "Circle";
     static constexpr std::string_view distance = "((rho - r)² + h²)^½, h above the plane, rho from the axis";
     static constexpr auto members() {
-        return std::tuple{place("center", "Center", &CircleSkeleton::center),
+        return std::tuple{place("center", "Centre", &CircleSkeleton::center),
                           direction("normal", "Normal", &CircleSkeleton::normal),
                           length("radius", "Radius", &CircleSkeleton::radius)};
     }

@@ -22,7 +22,8 @@ struct SegmentSkeleton {
     static constexpr std::string_view label = "Segment";
     static constexpr std::string_view distance = "to the foot of p on the line, kept between the ends";
     static constexpr auto members() {
-        return std::tuple{place("a", "A", &SegmentSkeleton::a), place("b", "B", &SegmentSkeleton::b)};
+        return std::tuple{place("a", "End a", &SegmentSkeleton::a),
+                          place("b", "End b", &SegmentSkeleton::b)};
     }
 
     static constexpr bool has_kinks = false;

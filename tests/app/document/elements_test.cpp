@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/shape/shapes.h"
 #include "core/scene/scene_fault.h"
 #include "tests/error_line.h"
 
@@ -38,12 +39,12 @@ Scene scene_of(std::vector<Element> elements) {
 }
 
 TEST(Elements, ANewOneStandsAroundItsPlaceInTidyNumbers) {
-    const Element added = new_element(ElementShape::segment, {0.123456789, -2.00049, 0}, 0.5, 0);
+    const Element added = new_element(Shape::segment, {0.123456789, -2.00049, 0}, 0.5, 0);
     const auto& segment = std::get<SegmentSkeleton>(added.skeleton);
     EXPECT_EQ(segment.a, (Vec3d{-0.38, -2, 0}));
     EXPECT_EQ(segment.b, (Vec3d{0.62, -2, 0}));
     EXPECT_EQ(added.width, 0.5);
-    const Element ring = new_element(ElementShape::circle, {0, 0, 0}, 1, 1);
+    const Element ring = new_element(Shape::circle, {0, 0, 0}, 1, 1);
     EXPECT_EQ(std::get<CircleSkeleton>(ring.skeleton).radius, 1.5);
     EXPECT_NE(ring.color, added.color);
 }
@@ -106,7 +107,7 @@ TEST(Elements, AnyRowOfEditsLeavesAValidScene) {
             const std::size_t kind = n == 0 ? 0 : below(5);
             if (kind == 0)
                 scene = with_element(
-                    scene, new_element(static_cast<ElementShape>(below(3)), {0, 0, 0}, 1, n));
+                    scene, new_element(static_cast<Shape>(below(3)), {0, 0, 0}, 1, n));
             if (kind == 1) scene = without_element(scene, below(n));
             if (kind == 2) scene = with_copy(scene, below(n));
             if (kind == 3) scene = with_element_moved(scene, below(n), below(n));

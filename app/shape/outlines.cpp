@@ -1,0 +1,124 @@
+#include "app/shape/outlines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/math/direction.h"
+
+namespace ivory {
+
+namespace {
+
+constexpr int ring_steps = 64, outline_steps = 96, most_balls = 24;
+
+double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
+
+Vec3d at_step(const Ring& ring, int step, int steps) {
+    return ring.at(2 * std::numbers::pi * step / steps);
+}
+
+// A sphere of radius r at distance D is seen as the circle of radius r sqrt(1 - r^2/D^2) that lies
+// r^2/D nearer than its centre, across the line of sight to it.
+std::optional<PictureLine> sphere_outline(const Projection& view, const Vec3d& center, double radius) {
+    const Vec3d to_camera = view.camera().position - center;
+    const double away = length(to_camera);
+    if (away <= radius * 1.0001) return std::nullopt;
+    const double share = radius / away;
+    const Ring ring(center + (radius * share) * unit(to_camera), to_camera,
+                    radius * std::sqrt(1 - share * share));
+    PictureLine line;
+    for (int step = 0; step < outline_steps; ++step) {
+        const auto seen = view.project(at_step(ring, step, outline_steps));
+        if (!seen) return std::nullopt;
+        line.push_back(*seen);
+    }
+    return line;
+}
+
+// Andrew's monotone chain.
+PictureLine convex_hull(PictureLine points) {
+    std::sort(points.begin(), points.end(),
+              [](WindowPoint a, WindowPoint b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    const auto turn = [](WindowPoint o, WindowPoint a, WindowPoint b) {
+        return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+    };
+    PictureLine hull;
+    for (int side = 0; side < 2; ++side) {
+        const std::size_t least = hull.size() + 1;
+        for (const WindowPoint& p : points) {
+            while (hull.size() > least && turn(hull[hull.size() - 2], hull.back(), p) <= 0)
+                hull.pop_back();
+            hull.push_back(p);
+        }
+        hull.pop_back();
+        std::reverse(points.begin(), points.end());
+    }
+    return hull;
+}
+
+}  // namespace
+
+Ring::Ring(const Vec3d& center, const Vec3d& normal, double radius)
+    : center_(center), n_(unit(normal)), radius_(radius) {
+    const Vec3d helper = std::abs(n_.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    e1_ = unit(cross(n_, helper));
+    e2_ = cross(n_, e1_);
+}
+
+Vec3d Ring::at(double angle) const {
+    return center_ + radius_ * (std::cos(angle) * e1_ + std::sin(angle) * e2_);
+}
+
+SkeletonLine ring_line(const Ring& ring) {
+    SkeletonLine line;
+    for (int step = 0; step <= ring_steps; ++step)
+        line.push_back(at_step(ring, step % ring_steps, ring_steps));
+    return line;
+}
+
+std::vector<PictureLine> hull_outline(const Projection& view, std::span<const Ball> balls) {
+    PictureLine all;
+    for (const Ball& ball : balls) {
+        const auto ring = sphere_outline(view, ball.center, ball.radius);
+        if (!ring) return {};
+        all.insert(all.end(), ring->begin(), ring->end());
+    }
+    // the convex hull of balls is seen as that of what they are seen as
+    if (balls.size() > 1) all = convex_hull(std::move(all));
+    return {std::move(all)};
+}
+
+// The outline of a tube around a curve: where its normal n, across the tangent, is also across the
+// line of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit
+// vectors across the tangent that fixes two, one for each edge.
+std::vector<PictureLine> ring_outline(const Projection& view, const Ring& ring, double distance) {
+    std::vector<PictureLine> edges(2);
+    for (int step = 0; step < outline_steps; ++step) {
+        const Vec3d place = at_step(ring, step, outline_steps);
+        const Vec3d outward = ring.radius() > 0 ? unit(place - ring.center()) : ring.first_axis();
+        const Vec3d from_camera = place - view.camera().position;
+        const double u = dot(from_camera, outward), v = dot(from_camera, ring.normal());
+        const double size = std::hypot(u, v);
+        if (size <= distance * 1.0001) return {};  // the line of sight runs along the tube
+        const double toward = std::atan2(v, u), half = std::acos(-distance / size);
+        for (std::size_t edge = 0; edge < 2; ++edge) {
+            const double angle = edge == 0 ? toward + half : toward - half;
+            const auto seen = view.project(
+                place + distance * (std::cos(angle) * outward + std::sin(angle) * ring.normal()));
+            if (!seen) return {};
+            edges[edge].push_back(*seen);
+        }
+    }
+    return edges;
+}
+
+int pieces_to_cover(double curve_length, double distance) {
+    const double wanted = distance > 0 ? std::ceil(curve_length / distance) : most_balls;
+    return static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_balls)));
+}
+
+}  // namespace ivory
