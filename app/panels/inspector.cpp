@@ -41,16 +41,16 @@ void draw_member(ViewerState& state, std::size_t element, const Member<S, Vec3d>
 template <class S>
 void draw_member(ViewerState& state, std::size_t element, const Member<S, double>& member,
                  const std::string& what, double step) {
-    number_field(state,
-                 {.id = "element." + std::string(member.key),
-                  .what = what,
-                  .value = std::get<S>(state.document.scene().elements[element].skeleton).*
-                           member.value,
-                  .step = step,
-                  .least = 0},
-                 field_width(), [=](Scene& scene, double changed) {
-                     std::get<S>(scene.elements[element].skeleton).*member.value = changed;
-                 });
+    number_field(
+        state,
+        {.id = "element." + std::string(member.key),
+         .what = what,
+         .value = std::get<S>(state.document.scene().elements[element].skeleton).*member.value,
+         .step = step,
+         .least = 0},
+        field_width(), [=](Scene& scene, double changed) {
+            std::get<S>(scene.elements[element].skeleton).*member.value = changed;
+        });
 }
 
 void draw_skeleton(ViewerState& state, std::size_t element, const std::string& name) {

@@ -25,8 +25,9 @@ constexpr const char* dragged_row = "row";
 
 // A button that adds: the shape's sign and its name.
 void add_button(ViewerState& state, Shape shape, float width) {
-    const auto [word, label] = with_shape(
-        shape, []<class S>() { return std::pair{std::string(S::word), std::string(S::label)}; });
+    const auto [word, label] = with_shape(shape, []<class S>() {
+        return std::pair{std::string(S::word), std::string(S::label)};
+    });
     const Palette& colors = palette(state.theme);
     const bool clicked = text_button(state, "add." + word, "", width);
     const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
@@ -113,8 +114,8 @@ void draw_row(ViewerState& state, std::size_t row, float width) {
                                                          static_cast<float>(c.g) / 255,
                                                          static_cast<float>(c.b) / 255, alpha});
     list.AddCircleFilled({at.x + px(state, 14), middle}, px(state, 5.5), swatch);
-    draw_icon(list, shape_of_skeleton(element.skeleton), {at.x + px(state, 34), middle}, px(state, 12),
-              packed(colors.quiet, alpha));
+    draw_icon(list, shape_of_skeleton(element.skeleton), {at.x + px(state, 34), middle},
+              px(state, 12), packed(colors.quiet, alpha));
     const float text_left = at.x + px(state, 48);
     const std::string whole_name = shown_text(state, printable(name, 200));
     const std::string shown = fitted_text(whole_name, at.x + width - height - text_left);

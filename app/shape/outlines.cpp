@@ -23,7 +23,8 @@ Vec3d at_step(const Ring& ring, int step, int steps) {
 
 // A sphere of radius r at distance D is seen as the circle of radius r sqrt(1 - r^2/D^2) that lies
 // r^2/D nearer than its centre, across the line of sight to it.
-std::optional<PictureLine> sphere_outline(const Projection& view, const Vec3d& center, double radius) {
+std::optional<PictureLine> sphere_outline(const Projection& view, const Vec3d& center,
+                                          double radius) {
     const Vec3d to_camera = view.camera().position - center;
     const double away = length(to_camera);
     if (away <= radius * 1.0001) return std::nullopt;

@@ -50,8 +50,8 @@ struct ShapeInHand<SegmentSkeleton> {
     static std::vector<PictureLine> outline(const Projection& view, const Element& element,
                                             double widths) {
         const double distance = widths * element.width;
-        return hull_outline(view, std::array{Ball{of(element).a, distance},
-                                             Ball{of(element).b, distance}});
+        return hull_outline(
+            view, std::array{Ball{of(element).a, distance}, Ball{of(element).b, distance}});
     }
     static void cover(const Element& element, double widths, std::vector<Ball>& balls) {
         const SegmentSkeleton& segment = of(element);

@@ -30,7 +30,8 @@ decltype(auto) with_shape_of(const Element& element, const Visit& visit) {
 }  // namespace
 
 std::span<const Stroke> strokes_of(Shape shape) {
-    return with_shape(shape, []<class S>() { return std::span<const Stroke>(ShapeInHand<S>::icon); });
+    return with_shape(shape,
+                      []<class S>() { return std::span<const Stroke>(ShapeInHand<S>::icon); });
 }
 
 std::string_view with_article(Shape shape) {
@@ -59,8 +60,7 @@ Element new_element(Shape shape, Vec3d place, double size, std::size_t elements_
 }
 
 std::vector<Grip> grips_of(const HandView& view, const Element& element) {
-    return with_shape_of(element,
-                         [&]<class S>() { return ShapeInHand<S>::grips(element, view); });
+    return with_shape_of(element, [&]<class S>() { return ShapeInHand<S>::grips(element, view); });
 }
 
 std::optional<Element> moved_by(const HandView& view, const Element& start,
@@ -76,10 +76,9 @@ SkeletonLines skeleton_lines(const Element& element) {
     return with_shape_of(element, [&]<class S>() { return ShapeInHand<S>::lines(element); });
 }
 
-std::vector<PictureLine> outline_of(const Projection& view, const Element& element,
-                                    double widths) {
-    return with_shape_of(
-        element, [&]<class S>() { return ShapeInHand<S>::outline(view, element, widths); });
+std::vector<PictureLine> outline_of(const Projection& view, const Element& element, double widths) {
+    return with_shape_of(element,
+                         [&]<class S>() { return ShapeInHand<S>::outline(view, element, widths); });
 }
 
 void cover_element(const Element& element, double widths, std::vector<Ball>& balls) {

@@ -22,27 +22,27 @@ namespace ivory {
 // All of it is about an element whose skeleton is an S. Distances come in widths: how far that is lies
 // with the element.
 template <class S>
-concept ShapeForHands =
-    requires(const Element& element, Element& changed, const HandView& view,
-             const HandleMotion& motion, std::string_view handle, double widths,
-             std::vector<Ball>& balls, const Vec3d& place, double size, int exponent) {
-        { ShapeInHand<S>::with_article } -> std::convertible_to<std::string_view>;
-        // within the square from -1 to 1
-        { ShapeInHand<S>::icon } -> std::convertible_to<std::span<const Stroke>>;
-        // A new one about a place, for an element of width `size`; coordinates are multiples of
-        // 10^exponent.
-        { ShapeInHand<S>::added(place, size, exponent) } -> std::same_as<S>;
-        // In the order in which they give way to one another on the screen.
-        { ShapeInHand<S>::grips(element, view) } -> std::same_as<std::vector<Grip>>;
-        // That handle moved; false where the pointer meets nothing.
-        { ShapeInHand<S>::move(changed, handle, view, motion) } -> std::same_as<bool>;
-        { ShapeInHand<S>::lines(element) } -> std::same_as<SkeletonLines>;
-        {
-            ShapeInHand<S>::outline(view.projection, element, widths)
-            } -> std::same_as<std::vector<PictureLine>>;
-        // Adds balls that cover all points within so many widths of it.
-        ShapeInHand<S>::cover(element, widths, balls);
-    };
+concept ShapeForHands = requires(const Element& element, Element& changed, const HandView& view,
+                                 const HandleMotion& motion, std::string_view handle, double widths,
+                                 std::vector<Ball>& balls, const Vec3d& place, double size,
+                                 int exponent) {
+    { ShapeInHand<S>::with_article } -> std::convertible_to<std::string_view>;
+    // within the square from -1 to 1
+    { ShapeInHand<S>::icon } -> std::convertible_to<std::span<const Stroke>>;
+    // A new one about a place, for an element of width `size`; coordinates are multiples of
+    // 10^exponent.
+    { ShapeInHand<S>::added(place, size, exponent) } -> std::same_as<S>;
+    // In the order in which they give way to one another on the screen.
+    { ShapeInHand<S>::grips(element, view) } -> std::same_as<std::vector<Grip>>;
+    // That handle moved; false where the pointer meets nothing.
+    { ShapeInHand<S>::move(changed, handle, view, motion) } -> std::same_as<bool>;
+    { ShapeInHand<S>::lines(element) } -> std::same_as<SkeletonLines>;
+    {
+        ShapeInHand<S>::outline(view.projection, element, widths)
+        } -> std::same_as<std::vector<PictureLine>>;
+    // Adds balls that cover all points within so many widths of it.
+    ShapeInHand<S>::cover(element, widths, balls);
+};
 
 static_assert([]<class... S>(TypeList<S...>) { return (ShapeForHands<S> && ...); }(Shapes{}),
               "each shape of core has its file here, and that says all there is to say");

@@ -197,8 +197,8 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     round_ = false;
     axis_.reset();
     does_ = Does::drag;
-    state.document.begin_drag(change_name(grabbed_->kind, grabbed_->part,
-                                          element_names(scene)[grabbed_->element]));
+    state.document.begin_drag(
+        change_name(grabbed_->kind, grabbed_->part, element_names(scene)[grabbed_->element]));
 }
 
 void ViewportMouse::move(ViewerState& state, const Input& input) {

@@ -261,9 +261,9 @@ void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle,
 // From a handle to those that stand out from it.
 void draw_arms(const Pen& pen, const std::vector<Handle>& handles, ImDrawList& list) {
     for (const Handle& handle : handles) {
-        const auto foot =
-            std::find_if(handles.begin(), handles.end(),
-                         [&](const Handle& other) { return other.name == handle.arm; });
+        const auto foot = std::find_if(handles.begin(), handles.end(), [&](const Handle& other) {
+            return other.name == handle.arm;
+        });
         if (foot == handles.end()) continue;
         const ImVec2 a = vec(foot->seen), b = vec(handle.seen);
         list.AddLine(a, b, with_alpha(border_color, 0.6f), pen.px(3.4));
@@ -361,8 +361,7 @@ void draw_overlay(const ViewerState& state, const ViewportMouse& mouse, ImDrawLi
     for (const Handle& handle : handles)
         if (handle.name != grabbed.name) draw_handle(state, pen, handle, false, false, list);
     draw_handle(state, pen, grabbed, false, true, list);
-    if (state.document.dragging())
-        draw_label(state, pen, drag_label(mouse, pen), grabbed.at, list);
+    if (state.document.dragging()) draw_label(state, pen, drag_label(mouse, pen), grabbed.at, list);
 }
 
 }  // namespace ivory
