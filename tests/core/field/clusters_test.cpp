@@ -211,7 +211,10 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                 parts, {}, [](const BundlePart&, double, double) { return true; },
                 std::numeric_limits<int>::max(),
                 [&](Window& window, const BundlePart& part) {
-                    const auto number = static_cast<std::size_t>(&part - parts.data());
+                    const auto number = static_cast<std::size_t>(
+                        std::find_if(parts.begin(), parts.end(),
+                                     [&](const BundlePart& p) { return p.axis == part.axis; }) -
+                        parts.begin());
                     seen.push_back({window.begin, window.end, number});
                     of_parts += number > 0;
                     if (random.below(40) != 0) return true;
