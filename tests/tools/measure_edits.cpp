@@ -19,6 +19,7 @@
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/run_tool.h"
 
@@ -53,14 +54,8 @@ struct Summary {
 Vec3d shifted(const Vec3d& p, const Vec3d& by) { return {p.x + by.x, p.y + by.y, p.z + by.z}; }
 
 void move_element(Element& element, const Vec3d& by) {
-    if (auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-        point->position = shifted(point->position, by);
-    } else if (auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        segment->b = shifted(segment->b, by);
-    } else {
-        auto& circle = std::get<CircleSkeleton>(element.skeleton);
-        circle.center = shifted(circle.center, by);
-    }
+    Vec3d& place = *tools::Members(element.skeleton).places.back();
+    place = shifted(place, by);
 }
 
 // A viewer in memory, its loop turned as in a window: a frame for an edit, one whenever the

@@ -6,8 +6,10 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <variant>
 
 #include "tests/reference/reference.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/random_scene.h"
 
 namespace ivory::tools {
@@ -100,31 +102,36 @@ class Maker {
     }
 
   private:
-    // Points of the skeleton that span it.
+    // Points of the skeleton that span it: its places, or what lies about them around a direction.
     static std::vector<Vec3d> marks(const Element& element) {
-        if (const auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-            return {point->position};
+        Skeleton skeleton = element.skeleton;
+        const Members members(skeleton);
+        std::vector<Vec3d> points;
+        if (members.directions.empty()) {
+            for (const Vec3d* const place : members.places) points.push_back(*place);
+            return points;
         }
-        if (const auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-            return {segment->a, segment->b};
-        }
-        const auto& circle = std::get<CircleSkeleton>(element.skeleton);
-        const Vec3d u = beside(circle.normal);
-        const Vec3d& n = circle.normal;
+        const Vec3d& n = *members.directions.front();
+        const Vec3d u = beside(n);
         const Vec3d cross{n.y * u.z - n.z * u.y, n.z * u.x - n.x * u.z, n.x * u.y - n.y * u.x};
         const Vec3d v = times(1 / length(n), cross);
-        const double r = circle.radius;
-        return {plus(circle.center, r, u), plus(circle.center, -r, u), plus(circle.center, r, v),
-                plus(circle.center, -r, v)};
+        for (const Vec3d& side : {u, times(-1, u), v, times(-1, v)}) {
+            points.push_back(std::visit(
+                [&]<class S>(const S& s) { return S::farthest(s.columns(), {}, side); }, skeleton));
+        }
+        return points;
     }
 
-    template <class Shape>
-    const Shape* some_shape() {
-        std::vector<const Shape*> shapes;
+    // A skeleton of which `suits` is true of the members.
+    template <class Suits>
+    std::optional<Skeleton> some_skeleton(const Suits& suits) {
+        std::vector<Skeleton> found;
         for (const Element& element : field_.elements()) {
-            if (const auto* shape = std::get_if<Shape>(&element.skeleton)) shapes.push_back(shape);
+            Skeleton skeleton = element.skeleton;
+            if (suits(Members(skeleton))) found.push_back(skeleton);
         }
-        return shapes.empty() ? nullptr : shapes[random_.below(shapes.size())];
+        if (found.empty()) return std::nullopt;
+        return found[random_.below(found.size())];
     }
 
     Vec3d some_direction() {
@@ -182,46 +189,51 @@ class Maker {
     }
 
     void axis() {
-        const auto* circle = some_shape<CircleSkeleton>();
-        if (circle == nullptr) return;
-        const double scale = std::max(circle->radius, 0x1p-10 * size_);
-        const Vec3d n = circle->normal, side = beside(n);
+        auto around = some_skeleton([](const Members& m) { return !m.directions.empty(); });
+        if (!around) return;
+        const Members members(*around);
+        const Vec3d center = *members.places.front(), n = *members.directions.front();
+        const double radius = members.lengths.empty() ? 0 : *members.lengths.front();
+        const double scale = std::max(radius, 0x1p-10 * size_);
+        const Vec3d side = beside(n);
         const double back = random_.sign() * std::ceil(random_.uniform(1, 4) * size_ / length(n));
-        const Vec3d o = plus(circle->center, back, n), d = times(back > 0 ? -1 : 1, n);
+        const Vec3d o = plus(center, back, n), d = times(back > 0 ? -1 : 1, n);
         rays_.push_back({o, d});
         for (const double off : {1e-3, 1e-8, 1e-14}) {
             rays_.push_back({plus(o, off * scale, side), d});
             rays_.push_back({o, plus(d, off * length(d), side)});
         }
-        rays_.push_back({circle->center, d});     // from the centre
-        rays_.push_back({circle->center, side});  // from the centre to the circle
-        const Vec3d across = plus(circle->center, -4 * size_, side);
+        rays_.push_back({center, d});     // from the centre
+        rays_.push_back({center, side});  // from the centre to the circle
+        const Vec3d across = plus(center, -4 * size_, side);
         rays_.push_back({across, side});
         rays_.push_back({plus(across, 1e-8 * scale, n), side});
         const Vec3d oblique = plus(side, random_.uniform(-1, 1), some_direction());
-        rays_.push_back({plus(circle->center, -4 * size_, oblique), oblique});
+        rays_.push_back({plus(center, -4 * size_, oblique), oblique});
     }
 
     void segment() {
-        const auto* shape = some_shape<SegmentSkeleton>();
-        if (shape == nullptr || random_.chance(0.2)) {  // through a point of some skeleton
+        auto line = some_skeleton([](const Members& m) { return m.places.size() > 1; });
+        if (!line || random_.chance(0.2)) {  // through a point of some skeleton
             if (field_.elements().empty()) return;
             const auto points = marks(field_.elements()[random_.below(field_.elements().size())]);
             const Vec3d o = viewpoint();
             rays_.push_back({o, from_to(o, points[0])});
             return;
         }
-        const Vec3d along = shape->a == shape->b ? some_direction() : from_to(shape->a, shape->b);
+        const Members members(*line);
+        const Vec3d a = *members.places.front(), b = *members.places.back();
+        const Vec3d along = a == b ? some_direction() : from_to(a, b);
         const double back = std::ceil(random_.uniform(1, 4) * size_ / length(along));
-        const Vec3d o = plus(shape->a, -back, along), side = beside(along);
+        const Vec3d o = plus(a, -back, along), side = beside(along);
         rays_.push_back({o, along});
-        rays_.push_back({shape->a, along});
-        rays_.push_back({plus(shape->b, back, along), times(-1, along)});
+        rays_.push_back({a, along});
+        rays_.push_back({plus(b, back, along), times(-1, along)});
         for (const double off : {1e-3, 1e-8, 1e-14}) {
             rays_.push_back({plus(o, off * size_, side), along});
             rays_.push_back({o, plus(along, off * length(along), side)});
         }
-        for (const Vec3d& end : {shape->a, shape->b}) {
+        for (const Vec3d& end : {a, b}) {
             const Vec3d from = viewpoint();
             rays_.push_back({from, from_to(from, end)});
             rays_.push_back({plus(end, -4 * size_, side), side});

@@ -14,30 +14,35 @@ Vec3d rounded_off(const Vec3d& v) { return {rounded_off(v.x), rounded_off(v.y), 
 
 Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-Element random_element(Random& random, double half) {
-    Element element;
-    const Vec3d p = rounded_off(random.in_cube(half));
-    switch (random.below(3)) {
-        case 0:
-            element.skeleton = PointSkeleton{p};
-            break;
-        case 1: {
-            const Vec3d q = random.chance(0.05) ? p : sum(p, rounded_off(random.in_cube(1)));
-            element.skeleton = SegmentSkeleton{p, q};
-            break;
-        }
-        default: {
-            Vec3d normal{0, 0, 0};
-            if (random.chance(0.3)) {
-                normal[random.below(3)] = random.sign();
-            } else {
-                normal = sum(rounded_off(random.in_cube(1)), {0, 0, 0x1p-21});  // never 0
-            }
-            const double radius = random.chance(0.05) ? 0 : rounded_off(random.uniform(0.1, 1.5));
-            element.skeleton = CircleSkeleton{p, normal, radius};
+// Its first place is that one, others are near it; some directions are along an axis.
+Skeleton random_skeleton(Shape shape, const Vec3d& first, Random& random) {
+    Skeleton skeleton = skeleton_of(shape);
+    const Members members(skeleton);
+    for (Vec3d* const place : members.places) {
+        const bool is_apart = place != members.places.front() && !random.chance(0.05);
+        *place = is_apart ? sum(first, rounded_off(random.in_cube(1))) : first;
+    }
+    for (Vec3d* const direction : members.directions) {
+        if (random.chance(0.3)) {
+            *direction = {0, 0, 0};
+            (*direction)[random.below(3)] = random.sign();
+        } else {
+            *direction = sum(rounded_off(random.in_cube(1)), {0, 0, 0x1p-21});  // never 0
         }
     }
-    element.kernel = static_cast<KernelKind>(random.below(3));
+    for (double* const length : members.lengths) {
+        *length = random.chance(0.05) ? 0 : rounded_off(random.uniform(0.1, 1.5));
+    }
+    return skeleton;
+}
+
+Element random_element(const SceneRecipe& recipe, Random& random, double half) {
+    Element element;
+    const Vec3d first = rounded_off(random.in_cube(half));
+    const auto shape = static_cast<Shape>(random.below(shape_count));
+    element.skeleton = random_skeleton(recipe.only ? recipe.only->shape : shape, first, random);
+    const auto kernel = static_cast<KernelKind>(random.below(kernel_count));
+    element.kernel = recipe.only ? recipe.only->kernel : kernel;
     element.strength = random.uniform(0.5, 1.5) * (random.chance(0.2) ? -1 : 1);
     element.width = std::exp(random.uniform(std::log(0.3), std::log(1.5)));
     element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
@@ -48,15 +53,9 @@ Element random_element(Random& random, double half) {
 // The same element at -p, or scaled and shifted.
 template <class Move>
 Element moved(Element element, Move&& move, double factor) {
-    if (auto* point = std::get_if<PointSkeleton>(&element.skeleton)) {
-        point->position = move(point->position);
-    } else if (auto* segment = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-        segment->a = move(segment->a);
-        segment->b = move(segment->b);
-    } else if (auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
-        circle->center = move(circle->center);
-        circle->radius *= factor;
-    }
+    const Members members(element.skeleton);
+    for (Vec3d* const place : members.places) *place = move(*place);
+    for (double* const length : members.lengths) *length *= factor;
     element.width *= factor;
     return element;
 }
@@ -68,7 +67,7 @@ Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed) {
     Scene scene;
     const double half = 0.9 * std::cbrt(static_cast<double>(recipe.elements));
     while (scene.elements.size() < recipe.elements) {
-        Element element = random_element(random, half);
+        Element element = random_element(recipe, random, half);
         if (scene.elements.empty()) {
             element.strength = std::fabs(element.strength);
             element.visible = true;
@@ -113,18 +112,17 @@ Scene mixed_scene(std::size_t elements, std::uint64_t seed) {
         Element element;
         const Vec3d center = in_ball(), along = in_ball();
         const double size = random.uniform(0.15, 0.3);
-        switch (scene.elements.size() % 3) {
-            case 0:
-                element.skeleton = PointSkeleton{center};
-                break;
-            case 1: {
-                const Vec3d half = (size / std::sqrt(dot(along, along))) * along;
-                element.skeleton = SegmentSkeleton{center - half, center + half};
-                break;
-            }
-            default:
-                element.skeleton = CircleSkeleton{center, along, size};
+        element.skeleton = skeleton_of(every_shape[scene.elements.size() % shape_count]);
+        const Members members(element.skeleton);
+        const Vec3d half = (size / std::sqrt(dot(along, along))) * along;
+        // Several places side by side, from -1 to 1 halves.
+        for (std::size_t n = 0; n < members.places.size(); ++n) {
+            const double last = static_cast<double>(members.places.size() - 1);
+            const double share = last > 0 ? 2 * static_cast<double>(n) / last - 1 : 0;
+            *members.places[n] = center + share * half;
         }
+        for (Vec3d* const direction : members.directions) *direction = along;
+        for (double* const length : members.lengths) *length = size;
         element.width = random.uniform(0.1, 0.2);
         element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
         scene.elements.push_back(element);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include "core/scene/scene.h"
+#include "tests/tools/kinds.h"
 
 namespace ivory::tools {
 
@@ -35,13 +37,14 @@ struct SceneRecipe {
     double shift = 0;       // added to every coordinate
     bool critical = false;  // elements in pairs p, -p around one centre, where the gradient is then
                             // 0, and T within 1e-3 .. 1e-14 of the field there
+    std::optional<ElementKind> only = {};  // nothing but such elements
 };
 
 // Coordinates are multiples of 2^-20 before they are scaled and shifted, so that a shift by 1e6
 // alone rounds nothing.
 [[nodiscard]] Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed);
 
-// Points, segments and circles by turns in the unit ball, small and narrow: what a person may have
+// The shapes by turns in the unit ball, small and narrow: what a person may have
 // made of many elements, seen from near by.
 [[nodiscard]] Scene mixed_scene(std::size_t elements, std::uint64_t seed);
 
