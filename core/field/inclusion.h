@@ -16,8 +16,8 @@ namespace ivory {
 // What is known of f on [t0, t1]. The elements that count as nothing there are left out of the
 // derivatives: f = g + r with g the sum over the others minus T and r a function with values in
 // `rest`, which is part of left, right and value but has no derivative here. So, with x = t - t0,
-//     f(t) <= left.hi + left_slope.hi x + curvature.hi x^2 / 2    and    f(t) <= left.hi + slope.hi
-//     x,
+//     f(t) <= left.hi + left_slope.hi x + curvature.hi x^2 / 2,
+//     f(t) <= left.hi + slope.hi x,
 // and likewise from below. slope and curvature are those of g; a downward jump of g' leaves
 // curvature.lo = -inf, an upward one curvature.hi = +inf.
 struct Enclosure {

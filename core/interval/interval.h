@@ -102,9 +102,12 @@ struct Interval {
     // Quotients: { x / y : x in a, y in b, y != 0 }, so that a / [0, 0] is empty, 1 / [0, 1] is
     // [1, inf], and a / b with 0 inside b is the whole line.
     //
-    //   b > 0:            lo = a.lo / (a.lo < 0 ? b.lo : b.hi), hi = a.hi / (a.hi < 0 ? b.hi :
-    //   b.lo) b.lo = 0 < b.hi:  the same with 1 / b.lo = inf: a >= 0: [a.lo / b.hi, inf],
-    //                     a <= 0: [-inf, a.hi / b.hi], 0 inside a: the whole line
+    //   b > 0:            lo = a.lo / (a.lo < 0 ? b.lo : b.hi),
+    //                     hi = a.hi / (a.hi < 0 ? b.hi : b.lo)
+    //   b.lo = 0 < b.hi:  the same with 1 / b.lo = inf:
+    //                     a >= 0: [a.lo / b.hi, inf],
+    //                     a <= 0: [-inf, a.hi / b.hi],
+    //                     0 inside a: the whole line
     //   b.hi <= 0:        (-a) / (-b)
     friend constexpr Interval operator/(const Interval& a, const Interval& b) {
         if (is_empty(a) || is_empty(b) || (b.lo == 0 && b.hi == 0)) return empty_set();

@@ -3,15 +3,16 @@
 // bounded once; every enclosure is then the plain double result with a proven radius around it (no
 // directed rounding in the inner loop).
 //
-// Lemma. With tau = t - t_r, rho >= |v_r|, kappa >= |e|, R = rho + kappa |tau|, err = eta + nu
-// |tau| and u = 2^-53, the doubles s = alpha + tau (beta + (beta + gamma tau)), s' = 2 (beta +
-// gamma tau) from alpha = v_r.v_r, beta = v_r.e, gamma = e.e differ from |v|^2 and its derivative
-// by at most
+// Lemma. With tau = t - t_r, rho >= |v_r|, kappa >= |e|, R = rho + kappa |tau|,
+// err = eta + nu |tau| and u = 2^-53, the doubles
+//     s  = alpha + tau (beta + (beta + gamma tau)),
+//     s' = 2 (beta + gamma tau)
+// from alpha = v_r.v_r, beta = v_r.e, gamma = e.e differ from |v|^2 and its derivative by at most
 //     |ds|  <= (2 R + err) err + 16 u R^2,
 //     |ds'| <= 2 (err kappa + (R + err) nu) + 24 u R kappa.
-// Proof: | |v + dv|^2 - |v|^2 | <= (2 |v| + |dv|) |dv| with |v| <= R, |dv| <= err; likewise for 2
-// v.e. The dot products carry 3 u each, the polynomial 5 u more, tau one u (which moves v by u
-// kappa |tau|): at most 8 u of R^2 + 2 u R^2 for s, 12 u R kappa for s'. The constants leave room
+// Proof: | |v + dv|^2 - |v|^2 | <= (2 |v| + |dv|) |dv| with |v| <= R, |dv| <= err; likewise for
+// 2 v.e. The dot products carry 3 u each, the polynomial 5 u more, tau one u (which moves v by
+// u kappa |tau|): at most 8 u of R^2 + 2 u R^2 for s, 12 u R kappa for s'. The constants leave room
 // for the roundings of the radius itself. Products that underflow are covered by the absolute term
 // of s_radius: kappa and rho are kept within 1e+-75 by `usable`.
 #pragma once

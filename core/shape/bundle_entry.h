@@ -10,8 +10,9 @@ struct BundleEntry {
     Real cx, cy, cz;
     Real inverse_square;  // 1 / w^2, times the kernel's argument_scale
     Real strength;        // b
-    Real slope;  // 2 b / w^2, with the kernel's slope_sign: F' = slope dk away . d; 0 where `kinked`
-                 // counts it instead
+    // 2 b / w^2, with the kernel's slope_sign: F' = slope dk away . d; 0 where `kinked` counts it
+    // instead
+    Real slope;
     Real unused[2];          // entries are written four numbers at a time
     Real mx, my, mz, extra;  // not of points
 };
