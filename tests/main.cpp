@@ -4,10 +4,23 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/math/instruction_sets.h"
+
+namespace {
+
+// No test may leave the others on another instruction set than theirs.
+class SameInstructionSet : public testing::EmptyTestEventListener {
+    void OnTestEnd(const testing::TestInfo&) override {
+        EXPECT_EQ(ivory::instruction_set(), ours_);
+    }
+    const std::string ours_{ivory::instruction_set()};
+};
+
+}  // namespace
 
 int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
@@ -24,5 +37,6 @@ int main(int argc, char** argv) {
         }
         ivory::limit_instruction_set(wanted);
     }
+    testing::UnitTest::GetInstance()->listeners().Append(new SameInstructionSet);
     return RUN_ALL_TESTS();
 }

@@ -60,7 +60,9 @@ Germ<I> either(const Germ<I>& a, const Germ<I>& b) {
     return {hull(a.value, b.value), hull(a.slope, b.slope)};
 }
 
-// k and k' for s in the given interval; s < 0 stands for rounding below 0.
+// k and k' for s in the given interval; s < 0 stands for rounding below 0. A kernel more has to be
+// written down here, by its formula.
+static_assert(kernel_count == 3);
 template <class I>
 Germ<I> kernel_germ(KernelKind kind, const I& s) {
     static const I one(1), ninth = I(1) / I(9), two_ninths = I(2) / I(9), four_ninths = I(4) / I(9);
@@ -235,10 +237,15 @@ class ElementAlongRay {
               },
               element.skeleton)) {}
 
+    // s and ds/dt for all t of the interval.
+    Germ<I> square(const I& t) const {
+        return std::visit(
+            [&](const auto& shape) { return t.is_point() ? shape.at(t) : shape.over(t); }, s_);
+    }
+
     // F and dF/dt for all t of the interval.
     Germ<I> over(const I& t) const {
-        const Germ<I> s = std::visit(
-            [&](const auto& shape) { return t.is_point() ? shape.at(t) : shape.over(t); }, s_);
+        const Germ<I> s = square(t);
         const Germ<I> k = kernel_germ(kernel_, s.value);
         return {strength_ * k.value, strength_ * (k.slope * s.slope)};
     }

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/trace/clip.h"
 #include "tests/reference/along_ray.h"
 #include "tests/reference/multiprecision.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
@@ -21,59 +21,10 @@ namespace {
 using reference::Germ;
 using reference::Real;
 using reference::RealInterval;
-using reference::Triple;
 using tools::Random;
 using tools::RayKind;
 
-// s and s' of one element along a ray, to 256 bits.
-class ExactSquare {
-  public:
-    ExactSquare(const Element& element, const Vec3d& origin, const Vec3d& direction)
-        : shape_(std::visit(
-              [&](const auto& skeleton) {
-                  return along(skeleton, origin, direction, RealInterval(element.width));
-              },
-              element.skeleton)) {}
-
-    [[nodiscard]] Germ<RealInterval> at(double t) const {
-        return std::visit([&](const auto& shape) { return shape.at(RealInterval(t)); }, shape_);
-    }
-
-  private:
-    using Vector = Triple<RealInterval>;
-    using Shape = std::variant<reference::PointAlongRay<RealInterval>,
-                               reference::SegmentAlongRay<RealInterval>,
-                               reference::CircleAlongRay<RealInterval>>;
-
-    static Vector over(const Vector& a, const RealInterval& x) {
-        return {a[0] / x, a[1] / x, a[2] / x};
-    }
-    static Vector difference(const Vec3d& a, const Vec3d& b) {
-        return reference::minus(reference::triple<RealInterval>(a),
-                                reference::triple<RealInterval>(b));
-    }
-    static Shape along(const PointSkeleton& point, const Vec3d& o, const Vec3d& d,
-                       const RealInterval& w) {
-        return reference::PointAlongRay<RealInterval>(over(difference(o, point.position), w),
-                                                      over(reference::triple<RealInterval>(d), w));
-    }
-    static Shape along(const SegmentSkeleton& segment, const Vec3d& o, const Vec3d& d,
-                       const RealInterval& w) {
-        if (segment.a == segment.b) return along(PointSkeleton{segment.a}, o, d, w);
-        return reference::SegmentAlongRay<RealInterval>(
-            over(difference(o, segment.a), w), over(difference(o, segment.b), w),
-            over(difference(segment.b, segment.a), w), over(reference::triple<RealInterval>(d), w));
-    }
-    static Shape along(const CircleSkeleton& circle, const Vec3d& o, const Vec3d& d,
-                       const RealInterval& w) {
-        return reference::CircleAlongRay<RealInterval>(
-            over(difference(o, circle.center), w),
-            reference::ElementAlongRay<RealInterval>::unit_normal(circle.normal),
-            RealInterval(circle.radius) / w, over(reference::triple<RealInterval>(d), w));
-    }
-
-    Shape shape_;
-};
+using ExactElement = reference::ElementAlongRay<RealInterval>;
 
 bool meets(const Interval<double>& bounds, const RealInterval& exact) {
     return Real(bounds.lo) <= exact.hi && exact.lo <= Real(bounds.hi);
@@ -88,9 +39,14 @@ std::string text(const Interval<double>& a) {
 // One element along one ray over a span, with what is exactly so.
 struct View {
     ElementAlongRay along;
-    ExactSquare exact;
+    ExactElement element;
     Interval<double> span;
     double cut;
+
+    // s and s', to 256 bits.
+    [[nodiscard]] Germ<RealInterval> exact(double t) const {
+        return element.square(RealInterval(t));
+    }
 };
 
 // Places to look at: the ends, where pieces and the active part begin and end, the foot, others.
@@ -121,13 +77,16 @@ std::vector<double> places(const View& view, Random& random) {
     return t;
 }
 
-// Calls check(view, random) for every element of some scenes along nasty rays, over spans of many
-// lengths that come near the element.
+// Calls check(view, random) for every element of scenes of one shape, one for each kernel, along
+// nasty rays, over spans of many lengths that come near the element.
 template <class Check>
-void for_views(std::uint64_t own_seed, const tools::SceneRecipe& recipe, const Check& check) {
-    const std::uint64_t first = tools::announced_seed(own_seed);
-    for (std::uint64_t seed = first; seed < first + 3; ++seed) {
-        const Scene scene = random_scene(recipe, seed);
+void for_views(Shape shape, std::uint64_t own_seed, tools::SceneRecipe recipe,
+               const Check& check) {
+    int views = 0;
+    std::uint64_t seed = tools::announced_seed(own_seed);
+    for (const KernelKind kernel : tools::every_kernel) {
+        recipe.only = {shape, kernel};
+        const Scene scene = random_scene(recipe, ++seed);
         const Field field = compile(scene);
         Random random(seed);
         for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
@@ -144,25 +103,31 @@ void for_views(std::uint64_t own_seed, const tools::SceneRecipe& recipe, const C
                 for (std::size_t i = 0; i < field.size(); ++i) {
                     const double cut = random.chance(0.5) ? field.cut[i] : random.uniform(0, 4);
                     View view{{},
-                              {scene.elements[field.source[i]], ray.origin, ray.direction},
+                              {scene.elements[field.source[i]], {ray.origin, ray.direction}, 0},
                               span,
                               cut};
                     along_ray(field, i, ray.origin, ray.direction, span, cut, view.along);
-                    SCOPED_TRACE("seed " + std::to_string(seed) + ", " +
+                    SCOPED_TRACE(tools::word_of(kernel) + ", seed " + std::to_string(seed) + ", " +
                                  std::string(tools::ray_kind_words[kind]) + ", element " +
                                  std::to_string(i) + ", span " + text(span));
                     check(view, random);
                     if (testing::Test::HasFatalFailure()) return;
+                    ++views;
                 }
             }
         }
     }
+    EXPECT_GT(views, 300);
 }
+
+class AlongRayOf : public testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Each, AlongRayOf, testing::ValuesIn(tools::every_shape),
+                         tools::name_of_kind);
 
 // What is enclosed at t is what some piece in force there says, or the circle.
 void check_at(const View& view, double t) {
     const ElementAlongRay& e = view.along;
-    const Germ<RealInterval> exact = view.exact.at(t);
+    const Germ<RealInterval> exact = view.exact(t);
     SCOPED_TRACE("t = " + std::to_string(t));
     if (e.form == ElementAlongRay::Form::circle) {
         const CircleAlongRay::At at = e.circle.at(t);
@@ -184,9 +149,9 @@ void check_at(const View& view, double t) {
     ASSERT_TRUE(held) << to_string(exact.value.lo) << ' ' << to_string(exact.slope.lo);
 }
 
-TEST(AlongRay, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
+TEST_P(AlongRayOf, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
     for (const double scale : {1.0, 1e-6, 1e6}) {
-        for_views(21, {.elements = 5, .scale = scale}, [](const View& view, Random& random) {
+        for_views(GetParam(), 21, {.elements = 4, .scale = scale}, [](const View& view, Random& random) {
             ASSERT_NE(view.along.form, ElementAlongRay::Form::unbounded);
             for (const double t : places(view, random)) {
                 ASSERT_NO_FATAL_FAILURE(check_at(view, t));
@@ -195,30 +160,30 @@ TEST(AlongRay, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
     }
 }
 
-TEST(AlongRay, SquareAndSlopeHoldTheExactOnesFarFromTheOrigin) {
-    for_views(22, {.elements = 5, .shift = 1e6}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, SquareAndSlopeHoldTheExactOnesFarFromTheOrigin) {
+    for_views(GetParam(), 22, {.elements = 4, .shift = 1e6}, [](const View& view, Random& random) {
         for (const double t : places(view, random)) ASSERT_NO_FATAL_FAILURE(check_at(view, t));
     });
 }
 
-TEST(AlongRay, CutIsExceededOutsideOfTheActivePart) {
-    for_views(23, {.elements = 5}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, CutIsExceededOutsideOfTheActivePart) {
+    for_views(GetParam(), 23, {.elements = 4}, [](const View& view, Random& random) {
         const Interval<double>& active = view.along.active;
         if (!is_empty(active)) {
             ASSERT_TRUE(is_subset(active, view.span)) << text(active);
         }
         for (const double t : places(view, random)) {
             if (contains(active, t)) continue;
-            ASSERT_TRUE(view.exact.at(t).value.hi >= Real(view.cut))
+            ASSERT_TRUE(view.exact(t).value.hi >= Real(view.cut))
                 << "t = " << t << ", active " << text(active) << ", cut " << view.cut;
         }
     });
 }
 
-TEST(AlongRay, LeastIsBelowEverySquareOfTheSpan) {
-    for_views(24, {.elements = 5}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, LeastIsBelowEverySquareOfTheSpan) {
+    for_views(GetParam(), 24, {.elements = 4}, [](const View& view, Random& random) {
         for (const double t : places(view, random)) {
-            const RealInterval s = view.exact.at(t).value;
+            const RealInterval s = view.exact(t).value;
             ASSERT_TRUE(s.hi >= Real(view.along.least))
                 << "t = " << t << ", s = " << s.lo.to_double() << ", least " << view.along.least
                 << ", cut " << view.cut << ", active " << text(view.along.active);
@@ -240,11 +205,11 @@ TEST(AlongRay, LeastAndPeakHoldWhereTheRayComesNearerToACircleOutsideOfTheActive
     EXPECT_GE(e.peak, std::exp(-s));
 }
 
-TEST(AlongRay, PeakIsAboveEveryValueOfTheSpanAndBeyondAboveThoseOutsideOfTheActivePart) {
-    for_views(25, {.elements = 5}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, PeakIsAboveEveryValueOfTheSpanAndBeyondAboveThoseOutsideOfTheActivePart) {
+    for_views(GetParam(), 25, {.elements = 4}, [](const View& view, Random& random) {
         const ElementAlongRay& e = view.along;
         for (const double t : places(view, random)) {
-            const RealInterval k = reference::kernel_germ(e.kernel, view.exact.at(t).value).value;
+            const RealInterval k = reference::kernel_germ(e.kernel, view.exact(t).value).value;
             ASSERT_TRUE(k.lo <= Real(e.peak)) << "t = " << t << ", peak " << e.peak;
             if (contains(e.active, t)) continue;
             const RealInterval f = RealInterval(e.strength) * k;
@@ -255,8 +220,8 @@ TEST(AlongRay, PeakIsAboveEveryValueOfTheSpanAndBeyondAboveThoseOutsideOfTheActi
 }
 
 // Without a kink in between, s' gains between inf s'' and sup s'' times the time.
-TEST(AlongRay, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
-    for_views(26, {.elements = 5}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
+    for_views(GetParam(), 26, {.elements = 4}, [](const View& view, Random& random) {
         const ElementAlongRay& e = view.along;
         for (int window = 0; window < 3; ++window) {
             const double length = width(view.span) * std::exp(random.uniform(-14, 0));
@@ -284,7 +249,7 @@ TEST(AlongRay, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
                 }
             }
             std::vector<Germ<RealInterval>> exact;
-            for (const double x : t) exact.push_back(view.exact.at(x));
+            for (const double x : t) exact.push_back(view.exact(x));
             for (std::size_t i = 0; i < t.size(); ++i) {
                 ASSERT_TRUE(meets(s, exact[i].value)) << "s at " << t[i] << ' ' << text(s);
                 ASSERT_TRUE(meets(ds, exact[i].slope)) << "s' at " << t[i] << ' ' << text(ds);
@@ -298,10 +263,10 @@ TEST(AlongRay, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
     });
 }
 
-TEST(AlongRay, EnclosuresAreAFewUnitsWide) {
-    for_views(27, {.elements = 5}, [](const View& view, Random& random) {
+TEST_P(AlongRayOf, EnclosuresAreAFewUnitsWide) {
+    for_views(GetParam(), 27, {.elements = 4}, [](const View& view, Random& random) {
         for (const double t : places(view, random)) {
-            const double s = view.exact.at(t).value.lo.to_double();
+            const double s = view.exact(t).value.lo.to_double();
             if (s > 100) continue;
             const ElementAlongRay& e = view.along;
             if (e.form == ElementAlongRay::Form::circle) {

@@ -5,10 +5,14 @@
 
 #include <cmath>
 #include <string>
+#include <variant>
 
 #include "core/interval/rounding.h"
 #include "core/scene/scene_json.h"
+#include "tests/reference/level.h"
 #include "tests/reference/reference.h"
+#include "tests/tools/kinds.h"
+#include "tests/tools/on_skeleton.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -69,6 +73,15 @@ Scene one(const Element& element, double threshold) {
     return scene;
 }
 
+// The greatest coordinate of the skeleton along an axis, or with sign -1 the least.
+double extreme(const Skeleton& skeleton, std::size_t axis, double sign) {
+    Vec3d direction;
+    direction[axis] = sign;
+    return std::visit(
+        [&]<class S>(const S& s) { return S::farthest(s.columns(), {}, direction)[axis]; },
+        skeleton);
+}
+
 TEST(BoundingBox, FieldIsNegativeOutsideOfBothBoxes) {
     const std::uint64_t first = tools::announced_seed(31);
     for (std::uint64_t seed = first; seed < first + 24; ++seed) {
@@ -100,28 +113,24 @@ TEST(BoundingBox, FigureOnesBoxIsSmallerThanItsBoxOfReach) {
     EXPECT_LT(volume(field.box), 0.8 * volume(field.reach_box));
 }
 
-// One element alone: the ball of reach is the solid.
-TEST(BoundingBox, BoxOfOneElementTouchesItsSolid) {
-    const double blinn = std::sqrt(std::log(2.0));  // exp(-q^2) = 1/2
-    const double nishimura = 1 - std::sqrt(1.0 / 3);
-    for (const auto& [kernel, q] :
-         {std::pair{KernelKind::blinn, blinn}, std::pair{KernelKind::nishimura, nishimura},
-          std::pair{KernelKind::wyvill, 0.5}}) {  // k(1/4) = (9/16) (8) / 9 = 1/2
-        SCOPED_TRACE(kernel_word(kernel));
-        Element element{.skeleton = PointSkeleton{{1, 2, 3}}, .kernel = kernel, .width = 2};
-        const Box3 point = compile(one(element, 0.5)).reach_box;
-        element.skeleton = SegmentSkeleton{{1, 2, 3}, {-1, 5, 3}};
-        const Box3 segment = compile(one(element, 0.5)).reach_box;
-        element.skeleton = CircleSkeleton{{1, 2, 3}, {0, 0, 4}, 1.5};
-        const Box3 circle = compile(one(element, 0.5)).reach_box;
-        const Vec3d a{1, 2, 3};
+class BoundingBoxOf : public testing::TestWithParam<tools::ElementKind> {};
+INSTANTIATE_TEST_SUITE_P(Each, BoundingBoxOf, testing::ValuesIn(tools::every_kind),
+                         tools::name_of_kind);
+
+// One element alone: what is within its reach is the solid. Of its box the skeleton's most distant
+// places stand `reach` inside.
+TEST_P(BoundingBoxOf, BoxOfOneElementTouchesItsSolid) {
+    const std::uint64_t first = tools::announced_seed(35);
+    const double q = reference::level(GetParam().kernel, 0.5).lo.to_double();
+    for (std::uint64_t seed = first; seed < first + 20; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Scene scene = tools::random_scene({.elements = 1, .only = GetParam()}, seed);
+        scene.threshold = 0.5 * scene.elements[0].strength;
+        const double reach = q * scene.elements[0].width;
+        const Box3 box = compile(scene).reach_box;
         for (std::size_t k = 0; k < 3; ++k) {
-            EXPECT_NEAR(point.lo[k], a[k] - 2 * q, 1e-12);
-            EXPECT_NEAR(point.hi[k], a[k] + 2 * q, 1e-12);
-            EXPECT_NEAR(segment.lo[k], std::min(a[k], Vec3d{-1, 5, 3}[k]) - 2 * q, 1e-12);
-            EXPECT_NEAR(segment.hi[k], std::max(a[k], Vec3d{-1, 5, 3}[k]) + 2 * q, 1e-12);
-            EXPECT_NEAR(circle.lo[k], a[k] - (k < 2 ? 1.5 : 0) - 2 * q, 1e-12);
-            EXPECT_NEAR(circle.hi[k], a[k] + (k < 2 ? 1.5 : 0) + 2 * q, 1e-12);
+            EXPECT_NEAR(box.lo[k], extreme(scene.elements[0].skeleton, k, -1) - reach, 1e-12);
+            EXPECT_NEAR(box.hi[k], extreme(scene.elements[0].skeleton, k, 1) + reach, 1e-12);
         }
     }
 }
@@ -187,7 +196,34 @@ TEST(BoundingBox, ShrinkingKeepsEveryPointWhereTheFieldIsNotNegative) {
     }
 }
 
-TEST(SkeletonBox, HoldsTheSkeletonAndIsTight) {
+class SkeletonBoxOf : public testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Each, SkeletonBoxOf, testing::ValuesIn(tools::every_shape),
+                         tools::name_of_kind);
+
+TEST_P(SkeletonBoxOf, HoldsTheSkeletonAndIsTight) {
+    const std::uint64_t first = tools::announced_seed(36);
+    for (std::uint64_t seed = first; seed < first + 40; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const Scene scene = tools::random_scene(
+            {.elements = 1, .only = tools::ElementKind{GetParam(), KernelKind{}}}, seed);
+        const Skeleton& skeleton = scene.elements[0].skeleton;
+        const Box3 box = skeleton_box(compile(scene), 0);
+        for (int n = 0; n < 50; ++n) {
+            const Vec3d p = tools::on_skeleton(skeleton, random);
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_GE(p[k], box.lo[k] - 1e-13);
+                EXPECT_LE(p[k], box.hi[k] + 1e-13);
+            }
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(box.lo[k], extreme(skeleton, k, -1), 1e-13);
+            EXPECT_NEAR(box.hi[k], extreme(skeleton, k, 1), 1e-13);
+        }
+    }
+}
+
+TEST(SkeletonBox, OfACircleHoldsItExactlyAndIsTight) {
     Random random(tools::announced_seed(34));
     for (int i = 0; i < 200; ++i) {
         const Vec3d center = random.in_cube(10);

@@ -15,6 +15,7 @@
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
 #include "tests/reference/reference.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/random_scene.h"
 #include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
@@ -29,11 +30,13 @@ Vec3d place(const Vec3d& origin, double t, const Vec3d& d) { return origin + t *
 // Calls visit(field, window, scale, ray's direction) for windows of random scenes, with several
 // rays of the bundle each; all lengths are near 1, so that plain double serves as truth.
 template <class Visit>
-void for_random_windows(const Visit& visit) {
-    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+void for_random_windows(const tools::ElementKind& kind, const Visit& visit) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
-        const Scene scene = tools::random_scene({.elements = 10}, seed);
+        tools::SceneRecipe recipe{.elements = 10};
+        if (seed % 4 != 0) recipe.only = kind;  // the others among all kinds
+        const Scene scene = tools::random_scene(recipe, seed);
         const Field field = compile(scene);
         const Vec3d origin = 4.0 * unit(random.in_cube(1));
         const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.02};
@@ -55,12 +58,16 @@ void for_random_windows(const Visit& visit) {
     }
 }
 
+class BundleOf : public testing::TestWithParam<tools::ElementKind> {};
+INSTANTIATE_TEST_SUITE_P(Each, BundleOf, testing::ValuesIn(tools::every_kind),
+                         tools::name_of_kind);
+
 // f <= (the sum over the window's entries) + above, and likewise below: what is left out is not
 // forgotten.
-TEST(Bundle, WhatIsLeftOutStaysInAsAnInterval) {
+TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
     int left_out = 0;
     double share = 0;  // of the bounds, used
-    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window,
+    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window,
                            double scale, const Vec3d& d, Random& random) {
         const Vec3d p = place(bundle.origin, random.uniform(window.begin, window.end), d);
         double above = 0, below = 0;
@@ -78,22 +85,24 @@ TEST(Bundle, WhatIsLeftOutStaysInAsAnInterval) {
         share =
             std::max({share, above / window.fine_bounds.above, below / window.fine_bounds.below});
     });
-    EXPECT_GT(left_out, 100);
+    std::printf("%d left out, up to %.3f of a bound\n", left_out, share);
+    EXPECT_GT(left_out, 50);  // where kernels end, in the scenes of all kinds alone
     EXPECT_GT(share, 0.1);
 }
 
 // The sums of a window's stages are off by no more than they say.
-TEST(Bundle, StagesAreAsGoodAsTheirBounds) {
+TEST_P(BundleOf, StagesAreAsGoodAsTheirBounds) {
     int windows = 0;
     double share = 0;
-    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window, double,
+    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window, double,
                            const Vec3d& d, Random& random) {
         ++windows;
         share =
             std::max(share, tools::expect_stages_hold(field, window, bundle.origin, d,
                                                       random.uniform(window.begin, window.end)));
     });
-    EXPECT_GT(windows, 1000);
+    std::printf("%d windows, up to %.3f of a bound\n", windows, share);
+    EXPECT_GT(windows, 400);
     EXPECT_GT(share, 0.1);
 }
 
@@ -359,10 +368,10 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
 
 // Between two places of a window without kinks f' rises by `rise` times their distance at the
 // most, and falls by `fall` times it.
-TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
+TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
     int windows = 0;
     double share = 0;
-    for_random_windows([&](const Field& field, const Bundle& bundle, const Window& window,
+    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window,
                            double scale, const Vec3d& d, Random& random) {
         const auto has_kinks = [](const auto& stage) {
             const std::span entries(stage.entry.data(), stage.size);
@@ -385,7 +394,8 @@ TEST(Bundle, TheSlopeChangesNoFasterThanItsBounds) {
         share = std::max(
             {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
     });
-    EXPECT_GT(windows, 500);
+    std::printf("%d windows, up to %.3f of a bound\n", windows, share);
+    EXPECT_GT(windows, 400);
     EXPECT_GT(share, 0.5);
 }
 

@@ -16,6 +16,8 @@
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
+#include "tests/tools/kinds.h"
+#include "tests/tools/on_skeleton.h"
 #include "tests/tools/random_scene.h"
 #include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
@@ -35,23 +37,11 @@ Scene crowd(std::size_t elements, std::uint64_t seed) {
     return scene;
 }
 
-// A point of the skeleton.
-Vec3d on_skeleton(const Field& field, std::size_t i, Random& random) {
-    if (field.shape[i] == Shape::point) return field.a(i);
-    if (field.shape[i] == Shape::segment) {
-        const double share =
-            random.below(3) == 0 ? std::round(random.uniform(0, 1)) : random.uniform(0, 1);
-        return (1 - share) * field.a(i) + share * field.b(i);
-    }
-    const Vec3d normal = unit(field.b(i));
-    const Vec3d across = unit(cross(normal, random.in_cube(1)));
-    return field.a(i) + field.radius[i] * across;
-}
-
 TEST(Clusters, HoldTheirMembers) {
     const std::uint64_t seed = tools::announced_seed(61);
     Random random(seed);
-    const Field field = compile(crowd(3000, seed));
+    const Scene scene = crowd(3000, seed);
+    const Field field = compile(scene);
     const Clusters& clusters = field.clusters;
     ASSERT_GT(clusters.size(), field.size() / cluster_size);
     ASSERT_EQ(clusters.first.back(), field.size());
@@ -65,7 +55,7 @@ TEST(Clusters, HoldTheirMembers) {
             (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
             ASSERT_LE(clusters.inverse_square[c], 1 / (field.width[i] * field.width[i]));
             for (int n = 0; n < 5; ++n) {
-                const Vec3d p = on_skeleton(field, i, random);
+                const Vec3d p = tools::on_skeleton(scene.elements[field.source[i]].skeleton, random);
                 ASSERT_LE(length(p - center), clusters.radius[c] * (1 + 1e-12));
             }
         }
@@ -266,13 +256,21 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
 
 // No element is nearer to a stretch than its bound says, though it stands in a cluster that is
 // hundreds of widths wide: its place relative to the cluster's centre has lost digits.
-TEST(Clusters, MembersOfWideClustersAreNoNearerThanTheirBounds) {
+class ClustersOf : public testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Each, ClustersOf, testing::ValuesIn(tools::every_shape),
+                         tools::name_of_kind);
+
+TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
     const std::uint64_t seed = tools::announced_seed(66);
     Random random(seed);
-    Scene scene;
+    Scene scene = tools::random_scene(
+        {.elements = least_clustered, .only = tools::ElementKind{GetParam(), KernelKind{}}}, seed);
     scene.threshold = 0.5;
-    for (std::size_t n = 0; n < least_clustered; ++n) {
-        scene.elements.push_back({.skeleton = PointSkeleton{random.in_cube(200)}});
+    for (Element& element : scene.elements) {
+        element.strength = element.width = 1;
+        element.visible = true;
+        const Vec3d by = random.in_cube(200) - place_of(element);
+        for (Vec3d* const place : tools::Members(element.skeleton).places) *place = *place + by;
     }
     const Field field = compile(scene);
     ActiveElements clusters;
@@ -283,9 +281,11 @@ TEST(Clusters, MembersOfWideClustersAreNoNearerThanTheirBounds) {
     NearElements near, nearer;
     for (int n = 0; n < 2000; ++n) {
         const std::size_t aim = random.below(field.size());
-        const Vec3d origin = field.a(aim) + 60.0 * unit(random.in_cube(1));
-        const Vec3d axis = unit(field.a(aim) + random.in_cube(0.7) - origin);
-        const double t = dot(field.a(aim) - origin, axis), middle = t + random.uniform(-2, 2);
+        const Skeleton& skeleton = scene.elements[field.source[aim]].skeleton;
+        const Vec3d target = tools::on_skeleton(skeleton, random);
+        const Vec3d origin = target + 60.0 * unit(random.in_cube(1));
+        const Vec3d axis = unit(target + random.in_cube(0.7) - origin);
+        const double t = dot(target - origin, axis), middle = t + random.uniform(-2, 2);
         const auto stretch = [&](double half) {
             return NearStretch{axis,
                                {},
@@ -300,7 +300,7 @@ TEST(Clusters, MembersOfWideClustersAreNoNearerThanTheirBounds) {
         for (const NearElements* found : {&near, &nearer}) {
             for (std::size_t k = 0; k < found->size(); ++k) {
                 if (static_cast<std::size_t>(found->element[k]) != aim) continue;
-                const Vec3d off = origin + t * axis - field.a(aim);
+                const Vec3d p = origin + t * axis, off = p - tools::nearest_place(skeleton, p);
                 ASSERT_LE(double{found->least[k]}, dot(off, off) * (1 + 1e-9) + 1e-12);
                 greatest = std::max(greatest, double{found->least[k]} / dot(off, off));
                 ++checked;
@@ -331,8 +331,10 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
             SCOPED_TRACE("seed " + std::to_string(seed) + ", bundle " + std::to_string(n));
             const Vec3d origin = 5.0 * unit(random.in_cube(1));
             const std::size_t aim = random.below(field.size());
+            const Vec3d target =
+                tools::on_skeleton(scene.elements[field.source[aim]].skeleton, random);
             const double spread = is_sparse ? 1e-4 : 0.01;
-            const Bundle bundle{origin, unit(on_skeleton(field, aim, random) - origin), spread};
+            const Bundle bundle{origin, unit(target - origin), spread};
             BundleWindows along;
             ASSERT_TRUE(along.build(field, all_clusters(field), bundle, 1e-6));
             const std::array parts{BundlePart{.axis = bundle.axis, .spread = spread}};

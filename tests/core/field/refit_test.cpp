@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/field/field.h"
 #include "core/math/direction.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/move_element.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
@@ -98,12 +100,13 @@ TEST(Refit, ClustersFollowWhatMoves) {
         const Vec3d center{clusters.x[c], clusters.y[c], clusters.z[c]};
         for (std::uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
             const Element& element = scene.elements[field.source[i]];
-            const Vec3d off = place_of(element) - center;
+            Vec3d off = place_of(element) - center;
             ASSERT_LE(std::sqrt(dot(off, off)), clusters.radius[c]);
             ASSERT_EQ(field.width[i], element.width);
-            const auto* point = std::get_if<PointSkeleton>(&element.skeleton);
-            if (point == nullptr) continue;
-            ASSERT_EQ(field.a(i), point->position);
+            const Vec3d a = std::visit([](const auto& s) { return s.columns().a; },
+                                       element.skeleton);
+            ASSERT_EQ(field.a(i), a);
+            off = a - center;
             ASSERT_NEAR(double{clusters.members.x[i]}, off.x / field.unit,
                         1e-6 * clusters.radius[c] / field.unit);
         }
@@ -127,9 +130,17 @@ TEST(Refit, WhatItCannotFollowItLeaves) {
     scene.elements.pop_back();
     expect_impossible(scene);
     scene = before;
-    scene.elements[i].kernel =
-        before.elements[i].kernel == KernelKind::blinn ? KernelKind::wyvill : KernelKind::blinn;
-    expect_impossible(scene);
+    for (const KernelKind kernel : tools::every_kernel) {
+        if (kernel == before.elements[i].kernel) continue;
+        scene.elements[i].kernel = kernel;
+        expect_impossible(scene);
+    }
+    scene = before;
+    for (const Shape shape : tools::every_shape) {
+        if (shape == shape_of_skeleton(before.elements[i].skeleton)) continue;
+        scene.elements[i].skeleton = tools::skeleton_of(shape);
+        expect_impossible(scene);
+    }
     scene = before;
     for (Element& element : scene.elements) element.width *= 2;
     expect_impossible(scene);

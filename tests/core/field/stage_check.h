@@ -19,6 +19,9 @@ struct StageValue {
     double slope = 0;
 };
 
+// Each shape's and each kernel's formula, once more: one that is new has to be added.
+static_assert(shape_count == 3 && kernel_count == 3);
+
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
 // but for the sums.
 template <class Real>

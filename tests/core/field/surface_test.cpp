@@ -9,6 +9,7 @@
 
 #include "core/trace/methods/method.h"
 #include "tests/reference/reference.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -54,11 +55,17 @@ void expect_exact(const reference::ReferenceField& field, const PointValue& at,
     }
 }
 
-TEST(Surface, ValueGradientAndColorAreThoseOfTheReference) {
+class SurfaceOf : public testing::TestWithParam<tools::ElementKind> {};
+INSTANTIATE_TEST_SUITE_P(Each, SurfaceOf, testing::ValuesIn(tools::every_kind),
+                         tools::name_of_kind);
+
+TEST_P(SurfaceOf, ValueGradientAndColorAreThoseOfTheReference) {
     const std::uint64_t first = tools::announced_seed(51);
-    for (std::uint64_t seed = first; seed < first + 12; ++seed) {
+    for (std::uint64_t seed = first; seed < first + 4; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const Scene scene = tools::random_scene({.elements = 6}, seed);
+        tools::SceneRecipe recipe{.elements = 6};
+        if (seed % 4 != 0) recipe.only = GetParam();  // one scene of all kinds
+        const Scene scene = tools::random_scene(recipe, seed);
         const Field field = compile(scene);
         const reference::ReferenceField exact(scene);
         Random random(seed);
@@ -77,11 +84,11 @@ TEST(Surface, ValueGradientAndColorAreThoseOfTheReference) {
 }
 
 // The point is not rounded on the way: rounding p(t) at 1e9 would move it by 1e-7.
-TEST(Surface, FarOriginsCostNoAccuracy) {
+TEST_P(SurfaceOf, FarOriginsCostNoAccuracy) {
     const std::uint64_t first = tools::announced_seed(52);
-    for (std::uint64_t seed = first; seed < first + 6; ++seed) {
+    for (std::uint64_t seed = first; seed < first + 3; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const Scene scene = tools::random_scene({.elements = 5}, seed);
+        const Scene scene = tools::random_scene({.elements = 5, .only = GetParam()}, seed);
         const Field field = compile(scene);
         const reference::ReferenceField exact(scene);
         Random random(seed);
@@ -160,7 +167,7 @@ TEST(Surface, ElementsOfTinyWidthLeaveTheGradientFarFromThemAlone) {
     Scene scene;
     scene.elements = {{.skeleton = PointSkeleton{{0, 0, 0}}},
                       {.skeleton = PointSkeleton{{3, 0.5, 0}}}};
-    for (const KernelKind kernel : {KernelKind::blinn, KernelKind::nishimura, KernelKind::wyvill}) {
+    for (const KernelKind kernel : tools::every_kernel) {
         for (const double width : {1e-60, 1e-95, 1e-130, 1e-200, 1e-308}) {
             SCOPED_TRACE(std::string(kernel_word(kernel)) + ", width " + std::to_string(width));
             scene.elements[1].kernel = kernel;

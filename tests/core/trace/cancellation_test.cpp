@@ -12,6 +12,7 @@
 #include "core/math/direction.h"
 #include "core/math/instruction_sets.h"
 #include "core/trace/trace.h"
+#include "tests/tools/instruction_sets.h"
 #include "tests/tools/random_scene.h"
 
 namespace ivory {
@@ -71,7 +72,6 @@ TEST(Cancellation, EndsBundlesOfEachMethodOnEachInstructionSet) {
     const Scene scene = crowd();
     const Field field = compile(scene);
     const std::atomic<bool> flag{true};
-    const std::string best(instruction_set());
     auto rays = std::make_unique<RayBundle>();
     const Vec3d axis = unit(through_the_crowd.direction);
     for (int k = 0; k < 256; ++k) {
@@ -79,7 +79,7 @@ TEST(Cancellation, EndsBundlesOfEachMethodOnEachInstructionSet) {
     }
     rays->bundle = {through_the_crowd.origin, axis, 0.05};
     for (const std::string_view set : instruction_sets()) {
-        ASSERT_TRUE(limit_instruction_set(set));
+        const tools::OnInstructionSet on(set);
         for (const Method* method : methods()) {
             SCOPED_TRACE(std::string(set) + " " + std::string(method->name()));
             Counts counts;
@@ -95,7 +95,6 @@ TEST(Cancellation, EndsBundlesOfEachMethodOnEachInstructionSet) {
             EXPECT_EQ(isolations->t_hi[255], std::numeric_limits<double>::infinity());
         }
     }
-    ASSERT_TRUE(limit_instruction_set(best));
 }
 
 }  // namespace

@@ -14,8 +14,11 @@
 #include "core/scene/scene_json.h"
 #include "core/trace/clip.h"
 #include "core/trace/trace.h"
+#include "tests/reference/level.h"
 #include "tests/reference/multiprecision.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
+#include "tests/tools/on_skeleton.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -82,6 +85,36 @@ TEST(Isolate, SphereOfOnePointHasItsClosedForm) {
                            tolerance * w / 8);
                 EXPECT_EQ(isolate(scene, {{0, 0, -4 * w}, {0, 0, -1}}).status, Status::miss);
             }
+        }
+    }
+}
+
+class IsolateOf : public testing::TestWithParam<tools::ElementKind> {};
+INSTANTIATE_TEST_SUITE_P(Each, IsolateOf, testing::ValuesIn(tools::every_kind),
+                         tools::name_of_kind);
+
+// Straight towards the nearest place of any skeleton the distance falls as t grows.
+TEST_P(IsolateOf, SurfaceOfOneElementIsWhereItsKernelIsAtTheThreshold) {
+    const std::uint64_t first = tools::announced_seed(75);
+    for (const double threshold : {0.05, 0.3, 0.6, 0.9, 0.999}) {
+        const double q = reference::level(GetParam().kernel, threshold).lo.to_double();
+        for (std::uint64_t seed = first; seed < first + 10; ++seed) {
+            SCOPED_TRACE(std::to_string(threshold) + ", seed " + std::to_string(seed));
+            Scene scene = tools::random_scene({.elements = 1, .only = GetParam()}, seed);
+            scene.threshold = threshold;
+            Element& element = scene.elements[0];
+            element.strength = 1;
+            Random random(seed);
+            const Vec3d origin = random.in_cube(6);
+            const Vec3d to = tools::nearest_place(element.skeleton, origin) - origin;
+            const double distance = std::sqrt(dot(to, to));
+            if (distance < 1.1 * q * element.width) continue;
+            const Isolation answer = isolate(scene, {origin, (1 / distance) * to});
+            ASSERT_EQ(answer.status, Status::hit);
+            EXPECT_LE(answer.t.hi - answer.t.lo, tolerance * element.width);
+            EXPECT_NEAR(midpoint(answer.t), distance - q * element.width,
+                        tolerance * element.width + 1e-12);
+            EXPECT_EQ(isolate(scene, {origin, (-1 / distance) * to}).status, Status::miss);
         }
     }
 }

@@ -20,6 +20,7 @@
 #include "core/trace/methods/natural_numbers.h"
 #include "core/trace/trace.h"
 #include "tests/reference/verdict.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
@@ -266,8 +267,8 @@ TEST(NaturalExtensions, EncloseTheFieldAndItsSlope) {
 }
 
 TEST(Lipschitz, SteepestSlopesOfTheKernels) {
-    for (const KernelKind kind :
-         {KernelKind::blinn, KernelKind::nishimura, KernelKind::wyvill}) {
+    for (const KernelKind kind : tools::every_kernel) {
+        SCOPED_TRACE(tools::word_of(kind));
         double beyond = 0;
         for (int n = 4000; n >= 0; --n) {
             const double q = n * 1e-3;

@@ -8,6 +8,7 @@
 
 #include "core/scene/scene_json.h"
 #include "tests/reference/verdict.h"
+#include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
 
@@ -71,7 +72,7 @@ int scene_count(int by_default) {
 }
 
 struct Case {
-    const char* name;
+    std::string name;
     tools::SceneRecipe recipe;
     double tolerance;
 };
@@ -111,7 +112,17 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"small", {.elements = 8, .scale = 1e-6}, 1e-9},
                     Case{"large", {.elements = 8, .scale = 1e6}, 1e-9},
                     Case{"critical", {.elements = 8, .critical = true}, 1e-9}),
-    [](const auto& test_case) { return std::string(test_case.param.name); });
+    [](const auto& test_case) { return test_case.param.name; });
+
+std::vector<Case> one_kind_alone() {
+    std::vector<Case> cases;
+    for (const tools::ElementKind& kind : tools::every_kind) {
+        cases.push_back({tools::word_of(kind), {.elements = 4, .only = kind}, 1e-9});
+    }
+    return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Each, TraceAgainstReference, testing::ValuesIn(one_kind_alone()),
+                         [](const auto& test_case) { return test_case.param.name; });
 
 }  // namespace
 }  // namespace ivory
