@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <random>
@@ -544,13 +547,41 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     expect_as_render(*scene, camera());
 }
 
+std::ptrdiff_t threads_of_this_process() {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+}
+
+// However far it has come with a picture that is far from done: none of its threads outlives it, and
+// nobody is woken any more.
 TEST(RenderSessionLife, EndsWhileItWorks) {
+    constexpr WindowSize large{3000, 2400};
+    const std::ptrdiff_t threads = threads_of_this_process();
+    int at_work = 0;
     for (int i = 0; i < 20; ++i) {
-        RenderSession session({2, tolerance, i % 2 == 0, [] {}});
-        session.show({with_left_blob_at(-1.2), camera(), {600, 400}, std::nullopt, Clock::now()});
-        std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
-        session.poll(FirstPicture::any);
+        SCOPED_TRACE(i);
+        std::atomic<int> wakes = 0;
+        {
+            RenderSession session({2, tolerance, i % 2 == 0, [&] { ++wakes; }});
+            session.show({with_left_blob_at(-1.2), camera(), large, std::nullopt, Clock::now()});
+            std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
+            if (i % 4 == 0) {
+                while (session.totals().tiles_traced == 0) std::this_thread::yield();
+            }
+            session.poll(FirstPicture::any);
+            EXPECT_FALSE(session.state().final);
+            EXPECT_GT(threads_of_this_process(), threads);
+            at_work += session.totals().begun == 1;
+        }
+        const int woken = wakes;
+        // What has been joined may be listed for a moment more.
+        for (int n = 0; n < 1000 && threads_of_this_process() != threads; ++n) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        EXPECT_EQ(threads_of_this_process(), threads);
+        EXPECT_EQ(wakes, woken);
     }
+    EXPECT_GE(at_work, 5);
 }
 
 }  // namespace
