@@ -13,6 +13,8 @@ build_packages=(
 memory_packages=(libosmesa6 libegl1 libgl1-mesa-dri)
 # What the tests of the viewer run on besides: a display in memory and its pointer.
 test_packages=("${memory_packages[@]}" xvfb xdotool python3)
+# What ./tests/format calls.
+format_packages=(clang-format)
 installed_now=no
 log=
 trap 'rm -f -- "$log"' EXIT
