@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 
 // From the lowest to the highest; "app" itself holds main.cpp.
 constexpr std::array<std::string_view, 15> layers = {
-    "core/math",    "core/interval", "core/kernel", "core/shape", "core/scene", "core/field",
-    "core/trace",   "core/render",
-    "app/platform", "app/document",  "app/shape",  "app/panels", "app/viewer", "app/cli",    "app",
+    "core/math",  "core/interval", "core/kernel", "core/shape",   "core/scene",
+    "core/field", "core/trace",    "core/render", "app/platform", "app/document",
+    "app/shape",  "app/panels",    "app/viewer",  "app/cli",      "app",
 };
 
 struct Include {

@@ -212,11 +212,10 @@ void add_viewer_options(CLI::App& app, ViewerArguments& viewer) {
 
 void check(const ViewerArguments& viewer) {
     if (viewer.headless) {
-        check_files(
-            std::array{NamedFile{"the scene", viewer.scene.value_or(""), {}},
-                       NamedFile{"the script", viewer.script.value_or(""), {}}},
-            std::array{
-                NamedFile{"--screenshot", viewer.screenshot.value_or(""), picture_suffixes}});
+        check_files(std::array{NamedFile{"the scene", viewer.scene.value_or(""), {}},
+                               NamedFile{"the script", viewer.script.value_or(""), {}}},
+                    std::array{NamedFile{"--screenshot", viewer.screenshot.value_or(""),
+                                         picture_suffixes}});
         return;
     }
     if (viewer.script) throw UsageError("--script needs --headless");
@@ -239,9 +238,9 @@ void check(const RenderArguments& render) {
 }
 
 void check(const TraceArguments& trace) {
-    check_files(std::array{NamedFile{"the scene", trace.scene, {}},
-                           NamedFile{"the rays", trace.rays, {}}},
-                std::array{NamedFile{"standard output", "-", {}}});
+    check_files(
+        std::array{NamedFile{"the scene", trace.scene, {}}, NamedFile{"the rays", trace.rays, {}}},
+        std::array{NamedFile{"standard output", "-", {}}});
 }
 
 void check(const InfoArguments& info) {

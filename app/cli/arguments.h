@@ -47,11 +47,11 @@ struct InfoArguments {
 
 struct ViewerArguments {
     std::optional<std::string> scene;
-    bool headless = false;  // in memory: no window, no display
+    bool headless = false;                          // in memory: no window, no display
     std::optional<std::string> script, screenshot;  // headless only
-    int width = 1280, height = 720;  // frame-buffer pixels
-    bool size_given = false;         // otherwise a window is as large as it was left
-    bool no_settings = false;        // leaves the user's settings alone; implied by `headless`
+    int width = 1280, height = 720;                 // frame-buffer pixels
+    bool size_given = false;                        // otherwise a window is as large as it was left
+    bool no_settings = false;  // leaves the user's settings alone; implied by `headless`
     int threads = 1;
 };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array stopping{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGUSR1, SIGUSR2};
 
 std::atomic<bool> flag{false};
-std::atomic<int> bell{-1};   // the end of a pipe that the signal writes to; < 0: none
+std::atomic<int> bell{-1};  // the end of a pipe that the signal writes to; < 0: none
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "else a signal handler must not touch it");
 

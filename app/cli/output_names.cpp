@@ -32,9 +32,9 @@ void check_suffix(const NamedFile& output) {
         return;
     }
     throw UsageError(std::string(output.option) + ": " + in_quotes(output.path) +
-                     (suffix.empty() ? " has no suffix"
-                                     : " has the suffix " + in_quotes(suffix) +
-                                           ", which is not written") +
+                     (suffix.empty()
+                          ? " has no suffix"
+                          : " has the suffix " + in_quotes(suffix) + ", which is not written") +
                      "; name a file that ends in " + listed(output.suffixes, "or"));
 }
 

@@ -9,8 +9,8 @@
 namespace ivory {
 
 struct NamedFile {
-    std::string_view option;  // what the user calls it: "--depth"
-    std::string path;         // "-": standard input or output; empty: not named
+    std::string_view option;                     // what the user calls it: "--depth"
+    std::string path;                            // "-": standard input or output; empty: not named
     std::span<const std::string_view> suffixes;  // of an output: those that say what is in it
 };
 

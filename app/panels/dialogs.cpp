@@ -45,8 +45,7 @@ std::optional<std::size_t> draw_answers(ViewerState& state, std::span<const Answ
     if (chosen) {
         if (pressed(ImGuiKey_RightArrow) || pressed(ImGuiKey_Tab))
             chosen = (*chosen + 1) % answers.size();
-        if (pressed(ImGuiKey_LeftArrow))
-            chosen = (*chosen + answers.size() - 1) % answers.size();
+        if (pressed(ImGuiKey_LeftArrow)) chosen = (*chosen + answers.size() - 1) % answers.size();
         if (plain_key_pressed(ImGuiKey_Enter)) given = chosen;
         if (plain_key_pressed(ImGuiKey_Escape)) given = answers.size() - 1;
     } else {

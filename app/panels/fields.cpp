@@ -23,10 +23,10 @@ namespace ivory {
 
 namespace {
 
-constexpr double drag_slack = 3;       // pixels at scale 1 before a press is a drag
-constexpr double fine = 0.1;           // of the way, with Shift
-constexpr float tooltip_delay = 0.5f;  // seconds
-constexpr double label_width = 84;     // pixels at scale 1
+constexpr double drag_slack = 3;         // pixels at scale 1 before a press is a drag
+constexpr double fine = 0.1;             // of the way, with Shift
+constexpr float tooltip_delay = 0.5f;    // seconds
+constexpr double label_width = 84;       // pixels at scale 1
 constexpr std::size_t most_shown = 400;  // characters of a text in its tooltip
 
 bool escape_pressed() { return plain_key_pressed(ImGuiKey_Escape); }
@@ -398,8 +398,8 @@ namespace {
 
 // An unchanged text changes no colour, however little of it the text tells.
 void hex_field(ViewerState& state, const std::string& id, const std::string& what,
-                      const Color& value, float width,
-                      const std::function<void(Scene&, const Color&)>& set) {
+               const Color& value, float width,
+               const std::function<void(Scene&, const Color&)>& set) {
     const std::string before = hex_of(value);
     std::string text = before;
     if (!text_field(state, id, text, width)) return;

@@ -200,8 +200,7 @@ void draw_contents(ViewerState& state) {
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - spacing);
     const bool cancel =
         text_button(state, "browser.cancel", "Cancel", button) ||
-        (has_keys && plain_key_pressed(ImGuiKey_Escape) &&
-         state.panels.text.id.empty());
+        (has_keys && plain_key_pressed(ImGuiKey_Escape) && state.panels.text.id.empty());
     ImGui::SameLine();
     done |= text_button(state, "browser.ok",
                         replaces            ? replace_label

@@ -101,9 +101,9 @@ struct PanelMemory {
 
     // Derived from a scene, kept until there is another one.
     std::shared_ptr<const Scene> named, ranged;
-    std::vector<std::string> names;  // element_names of `named`
+    std::vector<std::string> names;                            // element_names of `named`
     std::unordered_map<std::string_view, std::size_t> places;  // of `names`; empty: not asked for
-    ThresholdRange thresholds;       // of `ranged`: the slider's ends
+    ThresholdRange thresholds;                                 // of `ranged`: the slider's ends
 };
 
 }  // namespace ivory

@@ -106,8 +106,7 @@ double next_frame_wanted(const ViewerState& state) {
     const auto within = [&](double seconds) {
         wanted = wanted < 0 ? seconds : std::min(wanted, seconds);
     };
-    if (!state.message.text.empty())
-        within(std::max(state.message.seconds_left, rest));
+    if (!state.message.text.empty()) within(std::max(state.message.seconds_left, rest));
     if (io.WantTextInput) within(caret);
     // a tooltip is about to come
     if (ImGui::IsAnyItemHovered() && GImGui->HoveredIdTimer < 1) within(rest);

@@ -20,8 +20,9 @@ struct PictureState {
     Camera camera;
     WindowSize size;
 
-    bool final = false;      // it is the wanted scene's, and no work is left: the bytes of `ivory render`
-    double progress = 0;     // of the wanted picture: share of its pixels traced, 0..1
+    bool final =
+        false;  // it is the wanted scene's, and no work is left: the bytes of `ivory render`
+    double progress = 0;            // of the wanted picture: share of its pixels traced, 0..1
     double milliseconds = 0;        // from the edit until now, or until it was final
     double first_milliseconds = 0;  // from the edit to its first complete (coarse) picture
     int threads = 0;
@@ -29,7 +30,8 @@ struct PictureState {
     std::uint64_t tiles = 0, tiles_traced = 0;        // of the wanted picture
     bool surface_certainly_empty = false;             // proved: the wanted scene has no surface
 
-    std::string fault;  // one line: why there is no picture of the wanted scene; empty: there is, or will be
+    std::string
+        fault;  // one line: why there is no picture of the wanted scene; empty: there is, or will be
 
     // Row by row from the top: distance from the camera's position along the unit primary ray, +inf
     // where nothing is hit; blocks of equal values while it is coarse. Valid until the frame's end.

@@ -158,10 +158,14 @@ Widgets::Search rows_out_of_sight(ViewerState& state, ImVec2 first, float width,
         if (!eye)
             return Widget{WidgetKind::row,
                           {whole(first.x), whole(y), whole(width - height), whole(height)},
-                          clip, false, true};
+                          clip,
+                          false,
+                          true};
         return Widget{WidgetKind::toggle,
                       {whole(first.x + width - height), whole(y), whole(height), whole(height)},
-                      clip, state.document.scene().elements[*row].visible, true};
+                      clip,
+                      state.document.scene().elements[*row].visible,
+                      true};
     };
 }
 

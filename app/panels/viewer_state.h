@@ -65,7 +65,7 @@ struct ViewerState {
 
     // Wishes, fulfilled by Viewer at the end of the frame.
     std::optional<std::filesystem::path> screenshot_wanted;  // F12
-    bool quit = false;  // set only when nothing is left to ask
+    bool quit = false;                                       // set only when nothing is left to ask
 
     // The scene as it would be saved: the document's with the camera of the view.
     [[nodiscard]] Scene scene_with_view() const;

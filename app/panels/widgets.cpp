@@ -33,7 +33,8 @@ void Widgets::add(const std::string& id, WidgetKind kind, const WindowRect& rect
     const ImDrawList& list = *ImGui::GetWindowDrawList();
     const bool enabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) == 0;
     widgets_.try_emplace(
-        id, Widget{kind, rect, rect_between(list.GetClipRectMin(), list.GetClipRectMax()), on, enabled});
+        id, Widget{kind, rect, rect_between(list.GetClipRectMin(), list.GetClipRectMax()), on,
+                   enabled});
 }
 
 const Widget* Widgets::find(const std::string& id) const {

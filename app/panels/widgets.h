@@ -20,10 +20,10 @@ enum class WidgetKind : std::uint8_t {
     number,  // Ctrl+click, the shortest decimal that reads back to V, Enter
     text,    // a click, Ctrl+A, the text, Enter
     choice,  // V is a word: a click on ID unless `ID.V` is on the screen, then one on `ID.V`
-    color,   // V is [r, g, b], linear: a click on ID, which opens numbers `ID.r` `ID.g` `ID.b`; these;
-             // Escape
-    menu,    // a click opens it, and its entries are `ID.ENTRY`
-    row,     // of a list: a click selects it
+    color,  // V is [r, g, b], linear: a click on ID, which opens numbers `ID.r` `ID.g` `ID.b`; these;
+            // Escape
+    menu,  // a click opens it, and its entries are `ID.ENTRY`
+    row,   // of a list: a click selects it
 };
 
 struct Widget {

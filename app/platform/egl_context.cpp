@@ -26,22 +26,23 @@ class EglContext final : public MemoryContext {
           make_current_(library_.function<MakeCurrent>("eglMakeCurrent")),
           destroy_(library_.function<DestroyContext>("eglDestroyContext")) {
         const auto proc_address = library_.function<GetProcAddress>("eglGetProcAddress");
-        const auto platform_display = reinterpret_cast<GetPlatformDisplay*>(
-            proc_address("eglGetPlatformDisplayEXT"));
-        if (platform_display == nullptr) throw Error("EGL has no platforms (EGL_EXT_platform_base)");
+        const auto platform_display =
+            reinterpret_cast<GetPlatformDisplay*>(proc_address("eglGetPlatformDisplayEXT"));
+        if (platform_display == nullptr)
+            throw Error("EGL has no platforms (EGL_EXT_platform_base)");
         display_ = platform_display(egl_platform_surfaceless, nullptr, nullptr);
-        if (display_ == nullptr || !library_.function<Initialize>("eglInitialize")(display_, nullptr, nullptr))
+        if (display_ == nullptr ||
+            !library_.function<Initialize>("eglInitialize")(display_, nullptr, nullptr))
             throw Error("EGL has no surfaceless platform on this machine");
         try {
             // without it the context would be one of OpenGL ES
             if (!library_.function<BindApi>("eglBindAPI")(egl_opengl_api))
                 throw Error("EGL has no desktop OpenGL on this machine");
-            const std::array<EglInt, 7> attributes = {egl_major_version, 3,
-                                                      egl_minor_version, 3,
-                                                      egl_profile_mask,  egl_core_profile_bit,
-                                                      egl_none};
-            handle_ = library_.function<CreateContext>("eglCreateContext")(display_, nullptr, nullptr,
-                                                                           attributes.data());
+            const std::array<EglInt, 7> attributes = {
+                egl_major_version,    3,       egl_minor_version, 3, egl_profile_mask,
+                egl_core_profile_bit, egl_none};
+            handle_ = library_.function<CreateContext>("eglCreateContext")(
+                display_, nullptr, nullptr, attributes.data());
             if (handle_ == nullptr) throw Error("EGL gives no OpenGL 3.3 core context");
             if (!make_current_(display_, nullptr, nullptr, handle_))
                 throw Error("EGL refuses a context without a surface");
@@ -69,7 +70,8 @@ class EglContext final : public MemoryContext {
         gl_.BindRenderbuffer(gl::renderbuffer, color_);
         gl_.RenderbufferStorage(gl::renderbuffer, gl::rgba8, size.width, size.height);
         gl_.BindFramebuffer(gl::framebuffer, framebuffer_);
-        gl_.FramebufferRenderbuffer(gl::framebuffer, gl::color_attachment0, gl::renderbuffer, color_);
+        gl_.FramebufferRenderbuffer(gl::framebuffer, gl::color_attachment0, gl::renderbuffer,
+                                    color_);
         if (gl_.CheckFramebufferStatus(gl::framebuffer) != gl::framebuffer_complete)
             throw Error("EGL refuses a picture of " + std::to_string(size.width) + "x" +
                         std::to_string(size.height));

@@ -25,7 +25,8 @@ ImFont* add_font(ImFontAtlas& atlas, std::string_view file, float size) {
     config.FontDataOwnedByAtlas = false;  // it is part of the executable
     config.OversampleH = 2;
     config.OversampleV = 1;
-    config.PixelSnapH = true;  // stems fall on whole pixels: the same text looks the same everywhere
+    config.PixelSnapH =
+        true;  // stems fall on whole pixels: the same text looks the same everywhere
     // ImGui reads it and no more
     void* const bytes = const_cast<char*>(file.data());
     return atlas.AddFontFromMemoryTTF(bytes, static_cast<int>(file.size()), size, &config,
@@ -74,13 +75,13 @@ Fonts load_fonts(double scale, std::span<const char16_t> more) {
     const std::string_view regular = embedded_file("assets/fonts/Roboto-Regular.ttf");
     const std::string_view medium = embedded_file("assets/fonts/Roboto-Medium.ttf");
     Fonts fonts;
-    fonts.files = std::make_shared<const std::vector<FontFile>>(
-        system_fonts_for(lacking(regular, more)));
+    fonts.files =
+        std::make_shared<const std::vector<FontFile>>(system_fonts_for(lacking(regular, more)));
     for (const FontFile& file : *fonts.files) {
         std::vector<unsigned short>& ranges = fonts.ranges.emplace_back();
         for (const char16_t c : file.characters)
-            ranges.insert(ranges.end(), {static_cast<unsigned short>(c),
-                                         static_cast<unsigned short>(c)});
+            ranges.insert(ranges.end(),
+                          {static_cast<unsigned short>(c), static_cast<unsigned short>(c)});
         ranges.push_back(0);
     }
     fonts.text = add_font(*io.Fonts, regular, size);

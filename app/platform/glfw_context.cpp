@@ -26,36 +26,62 @@ Key key_of_token(int token) {
     if (token >= GLFW_KEY_F1 && token <= GLFW_KEY_F12)
         return static_cast<Key>(static_cast<int>(Key::f1) + token - GLFW_KEY_F1);
     switch (token) {
-        case GLFW_KEY_ESCAPE: return Key::escape;
-        case GLFW_KEY_ENTER: return Key::enter;
-        case GLFW_KEY_KP_ENTER: return Key::keypad_enter;
-        case GLFW_KEY_TAB: return Key::tab;
-        case GLFW_KEY_BACKSPACE: return Key::backspace;
-        case GLFW_KEY_INSERT: return Key::insert;
-        case GLFW_KEY_DELETE: return Key::del;
-        case GLFW_KEY_SPACE: return Key::space;
-        case GLFW_KEY_LEFT: return Key::left;
-        case GLFW_KEY_RIGHT: return Key::right;
-        case GLFW_KEY_UP: return Key::up;
-        case GLFW_KEY_DOWN: return Key::down;
-        case GLFW_KEY_HOME: return Key::home;
-        case GLFW_KEY_END: return Key::end;
-        case GLFW_KEY_PAGE_UP: return Key::page_up;
-        case GLFW_KEY_PAGE_DOWN: return Key::page_down;
-        case GLFW_KEY_MINUS: return Key::minus;
-        case GLFW_KEY_EQUAL: return Key::equal;
-        case GLFW_KEY_COMMA: return Key::comma;
-        case GLFW_KEY_PERIOD: return Key::period;
-        case GLFW_KEY_SLASH: return Key::slash;
+        case GLFW_KEY_ESCAPE:
+            return Key::escape;
+        case GLFW_KEY_ENTER:
+            return Key::enter;
+        case GLFW_KEY_KP_ENTER:
+            return Key::keypad_enter;
+        case GLFW_KEY_TAB:
+            return Key::tab;
+        case GLFW_KEY_BACKSPACE:
+            return Key::backspace;
+        case GLFW_KEY_INSERT:
+            return Key::insert;
+        case GLFW_KEY_DELETE:
+            return Key::del;
+        case GLFW_KEY_SPACE:
+            return Key::space;
+        case GLFW_KEY_LEFT:
+            return Key::left;
+        case GLFW_KEY_RIGHT:
+            return Key::right;
+        case GLFW_KEY_UP:
+            return Key::up;
+        case GLFW_KEY_DOWN:
+            return Key::down;
+        case GLFW_KEY_HOME:
+            return Key::home;
+        case GLFW_KEY_END:
+            return Key::end;
+        case GLFW_KEY_PAGE_UP:
+            return Key::page_up;
+        case GLFW_KEY_PAGE_DOWN:
+            return Key::page_down;
+        case GLFW_KEY_MINUS:
+            return Key::minus;
+        case GLFW_KEY_EQUAL:
+            return Key::equal;
+        case GLFW_KEY_COMMA:
+            return Key::comma;
+        case GLFW_KEY_PERIOD:
+            return Key::period;
+        case GLFW_KEY_SLASH:
+            return Key::slash;
         case GLFW_KEY_LEFT_SHIFT:
-        case GLFW_KEY_RIGHT_SHIFT: return Key::shift;
+        case GLFW_KEY_RIGHT_SHIFT:
+            return Key::shift;
         case GLFW_KEY_LEFT_CONTROL:
-        case GLFW_KEY_RIGHT_CONTROL: return Key::control;
+        case GLFW_KEY_RIGHT_CONTROL:
+            return Key::control;
         case GLFW_KEY_LEFT_ALT:
-        case GLFW_KEY_RIGHT_ALT: return Key::alt;
+        case GLFW_KEY_RIGHT_ALT:
+            return Key::alt;
         case GLFW_KEY_LEFT_SUPER:
-        case GLFW_KEY_RIGHT_SUPER: return Key::super;
-        default: return Key::none;
+        case GLFW_KEY_RIGHT_SUPER:
+            return Key::super;
+        default:
+            return Key::none;
     }
 }
 
@@ -66,8 +92,7 @@ Key key_of(int token, int scancode) {
         const char* const name = glfwGetKeyName(token, scancode);
         if (name != nullptr && name[0] != '\0' && name[1] == '\0') {
             const char c = name[0];
-            if (c >= 'a' && c <= 'z')
-                return static_cast<Key>(static_cast<int>(Key::a) + c - 'a');
+            if (c >= 'a' && c <= 'z') return static_cast<Key>(static_cast<int>(Key::a) + c - 'a');
             if (c >= '0' && c <= '9')
                 return static_cast<Key>(static_cast<int>(Key::digit0) + c - '0');
         }
@@ -143,7 +168,9 @@ class GlfwContext final : public WindowContext {
             glfwWaitEventsTimeout(seconds);
         queue_ = nullptr;
     }
-    void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
+    void set_title(const std::string& title) override {
+        glfwSetWindowTitle(window_, title.c_str());
+    }
     WindowSize points() const override {
         WindowSize size;
         glfwGetWindowSize(window_, &size.width, &size.height);
@@ -162,7 +189,8 @@ class GlfwContext final : public WindowContext {
         if (cursor == cursor_) return;
         cursor_ = cursor;
         GLFWcursor*& shape = cursors_[static_cast<std::size_t>(cursor)];
-        if (shape == nullptr) shape = glfwCreateStandardCursor(shapes[static_cast<std::size_t>(cursor)]);
+        if (shape == nullptr)
+            shape = glfwCreateStandardCursor(shapes[static_cast<std::size_t>(cursor)]);
         glfwSetCursor(window_, shape);
     }
     void set_clipboard(const std::string& text) override {
@@ -175,9 +203,9 @@ class GlfwContext final : public WindowContext {
 
   private:
     // in the order of Cursor
-    static constexpr std::array shapes = {GLFW_ARROW_CURSOR,     GLFW_IBEAM_CURSOR,
-                                          GLFW_HAND_CURSOR,      GLFW_CROSSHAIR_CURSOR,
-                                          GLFW_HRESIZE_CURSOR,   GLFW_VRESIZE_CURSOR};
+    static constexpr std::array shapes = {GLFW_ARROW_CURSOR,   GLFW_IBEAM_CURSOR,
+                                          GLFW_HAND_CURSOR,    GLFW_CROSSHAIR_CURSOR,
+                                          GLFW_HRESIZE_CURSOR, GLFW_VRESIZE_CURSOR};
 
     static GlfwContext& of(GLFWwindow* window) {
         return *static_cast<GlfwContext*>(glfwGetWindowUserPointer(window));
@@ -196,7 +224,8 @@ class GlfwContext final : public WindowContext {
             glfwGetWindowSize(window, &points.width, &points.height);
             const WindowSize pixels = of(window).size();
             if (points.width < 1 || points.height < 1) return;
-            of(window).note(MouseMoved{{x * pixels.width / points.width, y * pixels.height / points.height}});
+            of(window).note(
+                MouseMoved{{x * pixels.width / points.width, y * pixels.height / points.height}});
         });
         glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
             if (entered == GLFW_FALSE) of(window).note(MouseLeft{});
@@ -211,11 +240,12 @@ class GlfwContext final : public WindowContext {
         glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
             of(window).note(WheelTurned{x, y});
         });
-        glfwSetKeyCallback(window_, [](GLFWwindow* window, int token, int scancode, int action, int) {
-            const Key key = key_of(token, scancode);
-            if (key != Key::none)
-                of(window).note(KeyChanged{key, action != GLFW_RELEASE, action == GLFW_REPEAT});
-        });
+        glfwSetKeyCallback(
+            window_, [](GLFWwindow* window, int token, int scancode, int action, int) {
+                const Key key = key_of(token, scancode);
+                if (key != Key::none)
+                    of(window).note(KeyChanged{key, action != GLFW_RELEASE, action == GLFW_REPEAT});
+            });
         glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned int character) {
             of(window).note(TextTyped{static_cast<char32_t>(character)});
         });

@@ -57,14 +57,15 @@ void feed_imgui(const Input& input) {
 
     bool dragging = false;
     for (const bool down : input.mouse_down) dragging = dragging || down;
-    const ImVec2 mouse = input.mouse_inside || dragging
-                             ? ImVec2{static_cast<float>(input.mouse.x), static_cast<float>(input.mouse.y)}
-                             : nowhere;
+    const ImVec2 mouse = input.mouse_inside || dragging ? ImVec2{static_cast<float>(input.mouse.x),
+                                                                 static_cast<float>(input.mouse.y)}
+                                                        : nowhere;
     const Modifiers& modifiers = input.modifiers;
     const auto held = [&](Key key) { return input.key_down[static_cast<std::size_t>(key)]; };
 
     // ImGui's buttons: 0 left, 1 right, 2 middle, as MouseButton
-    static_assert(static_cast<int>(MouseButton::right) == 1 && static_cast<int>(MouseButton::middle) == 2);
+    static_assert(static_cast<int>(MouseButton::right) == 1 &&
+                  static_cast<int>(MouseButton::middle) == 2);
 #if IMGUI_VERSION_NUM >= 18700
     io.AddMousePosEvent(mouse.x, mouse.y);
     for (std::size_t b = 0; b < mouse_button_count; ++b)

@@ -56,7 +56,8 @@ void ImguiRenderer::upload_fonts() {
     gl_.TexParameteri(gl::texture_2d, gl::texture_min_filter, gl::linear);
     gl_.TexParameteri(gl::texture_2d, gl::texture_mag_filter, gl::linear);
     gl_.PixelStorei(gl::unpack_row_length, 0);
-    gl_.TexImage2D(gl::texture_2d, 0, gl::rgba8, width, height, 0, gl::rgba, gl::unsigned_byte, pixels);
+    gl_.TexImage2D(gl::texture_2d, 0, gl::rgba8, width, height, 0, gl::rgba, gl::unsigned_byte,
+                   pixels);
     // a pointer up to 1.91.3, an integer after
     atlas.SetTexID((ImTextureID)(std::intptr_t)font_texture_);
     atlas.ClearTexData();
@@ -79,8 +80,8 @@ void ImguiRenderer::draw(const ImDrawData& data, WindowSize framebuffer) {
         const ImDrawList& list = *data.CmdLists[n];
         gl_.BufferData(gl::array_buffer, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data,
                        gl::stream_draw);
-        gl_.BufferData(gl::element_array_buffer, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
-                       gl::stream_draw);
+        gl_.BufferData(gl::element_array_buffer, list.IdxBuffer.size_in_bytes(),
+                       list.IdxBuffer.Data, gl::stream_draw);
         for (const ImDrawCmd& command : list.CmdBuffer) {
             if (command.UserCallback != nullptr) continue;  // Ivory has none
             const auto left = static_cast<int>(std::max(command.ClipRect.x, 0.0f));
@@ -90,8 +91,7 @@ void ImguiRenderer::draw(const ImDrawData& data, WindowSize framebuffer) {
             if (right <= left || bottom <= top) continue;
             // OpenGL counts rows from below
             gl_.Scissor(left, framebuffer.height - bottom, right - left, bottom - top);
-            gl_.BindTexture(gl::texture_2d,
-                            static_cast<GlUint>((std::intptr_t)command.GetTexID()));
+            gl_.BindTexture(gl::texture_2d, static_cast<GlUint>((std::intptr_t)command.GetTexID()));
             gl_.DrawElementsBaseVertex(
                 gl::triangles, static_cast<GlSize>(command.ElemCount),
                 sizeof(ImDrawIdx) == 2 ? gl::unsigned_short : gl::unsigned_int,

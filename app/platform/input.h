@@ -27,10 +27,31 @@ enum class Key : std::uint8_t {
     digit0, digit1, digit2, digit3, digit4, digit5, digit6, digit7, digit8, digit9,
     f1, f2, f3, f4, f5, f6, f7, f8, f9, f10, f11, f12,
     // clang-format on
-    escape, enter, tab, backspace, insert, del, space,
-    left, right, up, down, home, end, page_up, page_down,
-    minus, equal, comma, period, slash, keypad_enter,
-    shift, control, alt, super,
+    escape,
+    enter,
+    tab,
+    backspace,
+    insert,
+    del,
+    space,
+    left,
+    right,
+    up,
+    down,
+    home,
+    end,
+    page_up,
+    page_down,
+    minus,
+    equal,
+    comma,
+    period,
+    slash,
+    keypad_enter,
+    shift,
+    control,
+    alt,
+    super,
 };
 inline constexpr std::size_t key_count = static_cast<std::size_t>(Key::super) + 1;
 
@@ -52,7 +73,7 @@ struct KeyPress {
 struct Input {
     double elapsed = 1.0 / 60;  // seconds since the frame before
     double seconds = 1.0 / 60;  // the same, > 0 and never long: animations go on after a sleep
-    WindowSize size;             // of the frame buffer; 0 x 0 while minimised
+    WindowSize size;            // of the frame buffer; 0 x 0 while minimised
     double scale = 1;           // HiDPI: everything drawn is this many times as large
 
     WindowPoint mouse;
@@ -63,31 +84,52 @@ struct Input {
 
     Modifiers modifiers;
     std::array<bool, key_count> key_down{};
-    std::vector<KeyPress> pressed;       // keys that went down, or repeat
-    std::u32string text;                 // typed characters
-    std::vector<std::string> dropped;    // files dropped on the window
-    std::optional<Theme> theme;          // the window system has changed to it
-    bool close_requested = false;        // the window's close button
+    std::vector<KeyPress> pressed;     // keys that went down, or repeat
+    std::u32string text;               // typed characters
+    std::vector<std::string> dropped;  // files dropped on the window
+    std::optional<Theme> theme;        // the window system has changed to it
+    bool close_requested = false;      // the window's close button
 
     [[nodiscard]] bool down(MouseButton button) const {
         return mouse_down[static_cast<std::size_t>(button)];
     }
 };
 
-struct MouseMoved { WindowPoint at; };
+struct MouseMoved {
+    WindowPoint at;
+};
 struct MouseLeft {};
-struct MouseButtonChanged { MouseButton button; bool down; };
-struct WheelTurned { double x, y; };
-struct KeyChanged { Key key; bool down; bool repeated; };
-struct TextTyped { char32_t character; };
-struct FilesDropped { std::vector<std::string> files; };
-struct Resized { WindowSize size; };
-struct Rescaled { double scale; };
-struct ThemeChanged { Theme theme; };
+struct MouseButtonChanged {
+    MouseButton button;
+    bool down;
+};
+struct WheelTurned {
+    double x, y;
+};
+struct KeyChanged {
+    Key key;
+    bool down;
+    bool repeated;
+};
+struct TextTyped {
+    char32_t character;
+};
+struct FilesDropped {
+    std::vector<std::string> files;
+};
+struct Resized {
+    WindowSize size;
+};
+struct Rescaled {
+    double scale;
+};
+struct ThemeChanged {
+    Theme theme;
+};
 struct CloseRequested {};
-using Event = std::variant<MouseMoved, MouseLeft, MouseButtonChanged, WheelTurned, KeyChanged,
-                           TextTyped, FilesDropped, Resized, Rescaled, ThemeChanged,
-                           CloseRequested>;
+using Event =
+    std::variant<MouseMoved, MouseLeft, MouseButtonChanged, WheelTurned, KeyChanged, TextTyped,
+                 FilesDropped, Resized, Rescaled, ThemeChanged, CloseRequested>;
 
 // Turns the stream of events into frames. Dear ImGui 1.86 samples state once a frame: a press and its
 // release in one frame would be no click, and text is taken before keys. So a frame ends before an

@@ -24,15 +24,21 @@ class OsmesaContext final : public MemoryContext {
         : library_({"libOSMesa.so.8", "libOSMesa.so.6"}),
           make_current_(library_.function<MakeCurrent>("OSMesaMakeCurrent")),
           destroy_(library_.function<Destroy>("OSMesaDestroyContext")) {
-        const std::array<int, 13> attributes = {
-            osmesa_format,        static_cast<int>(gl::rgba),
-            osmesa_depth_bits,    0,
-            osmesa_stencil_bits,  0,
-            osmesa_profile,       osmesa_core_profile,
-            osmesa_major_version, 3,
-            osmesa_minor_version, 3,
-            0};
-        handle_ = library_.function<Create>("OSMesaCreateContextAttribs")(attributes.data(), nullptr);
+        const std::array<int, 13> attributes = {osmesa_format,
+                                                static_cast<int>(gl::rgba),
+                                                osmesa_depth_bits,
+                                                0,
+                                                osmesa_stencil_bits,
+                                                0,
+                                                osmesa_profile,
+                                                osmesa_core_profile,
+                                                osmesa_major_version,
+                                                3,
+                                                osmesa_minor_version,
+                                                3,
+                                                0};
+        handle_ =
+            library_.function<Create>("OSMesaCreateContextAttribs")(attributes.data(), nullptr);
         if (handle_ == nullptr) throw Error("OSMesa gives no OpenGL 3.3 core context");
         try {
             bind(size);

@@ -52,8 +52,8 @@ std::vector<fs::path> font_paths() {
     std::vector<fs::path> paths;
     for (const fs::path& folder : folders()) {
         std::error_code error;
-        fs::recursive_directory_iterator at(folder,
-                                            fs::directory_options::skip_permission_denied, error);
+        fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied,
+                                            error);
         while (!error && at != fs::recursive_directory_iterator()) {
             const std::string type = at->path().extension().string();
             if (type == ".ttf" || type == ".otf" || type == ".ttc") paths.push_back(at->path());
@@ -73,8 +73,8 @@ std::vector<fs::path> font_paths() {
 bool begins_as_font(std::string_view bytes) {
     using namespace std::string_view_literals;
     if (bytes.size() < 64) return false;
-    for (const std::string_view sign : {"\0\1\0\0"sv, "OTTO"sv, "true"sv, "ttcf\0\1\0\0"sv,
-                                        "ttcf\0\2\0\0"sv})
+    for (const std::string_view sign :
+         {"\0\1\0\0"sv, "OTTO"sv, "true"sv, "ttcf\0\1\0\0"sv, "ttcf\0\2\0\0"sv})
         if (bytes.starts_with(sign)) return true;
     return false;
 }
@@ -93,15 +93,16 @@ std::shared_ptr<const std::string> read_font(const fs::path& path) {
 // Those of `characters` that the font has.
 std::vector<char16_t> drawn_by(const std::string& bytes, std::span<const char16_t> characters) {
     std::vector<ImWchar> ranges;
-    for (const char16_t c : characters) ranges.insert(ranges.end(), {static_cast<ImWchar>(c), static_cast<ImWchar>(c)});
+    for (const char16_t c : characters)
+        ranges.insert(ranges.end(), {static_cast<ImWchar>(c), static_cast<ImWchar>(c)});
     ranges.push_back(0);
     ImFontAtlas atlas;
     ImFontConfig config;
     config.FontDataOwnedByAtlas = false;
     // ImGui reads it and no more
     void* const data = const_cast<char*>(bytes.data());
-    const ImFont* const font = atlas.AddFontFromMemoryTTF(
-        data, static_cast<int>(bytes.size()), 10, &config, ranges.data());
+    const ImFont* const font = atlas.AddFontFromMemoryTTF(data, static_cast<int>(bytes.size()), 10,
+                                                          &config, ranges.data());
     std::vector<char16_t> drawn;
     if (font == nullptr || !atlas.Build()) return drawn;
     for (const char16_t c : characters)

@@ -64,7 +64,7 @@ class RenderSession {
     struct Settings {
         int threads = 1;
         double tolerance = 1e-6;  // E
-        bool yields = false;      // its threads get a processor after others, where that is possible
+        bool yields = false;  // its threads get a processor after others, where that is possible
         // Called by other threads when there is something to poll; must not throw. For refinement
         // no more often than is worth a frame, for a first complete and for a final picture at
         // once.

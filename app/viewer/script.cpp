@@ -299,8 +299,7 @@ step::Any step_of(const json& object, StepKeys& keys) {
     if (const json* value = keys.take("state"))
         return step::WriteState{file_of(*value, "state", state_suffixes)};
     if (const json* value = keys.take("screenshot")) {
-        step::Screenshot screenshot{file_of(*value, "screenshot", picture_suffixes),
-                                    false};
+        step::Screenshot screenshot{file_of(*value, "screenshot", picture_suffixes), false};
         if (const json* viewport = keys.take("viewport")) {
             if (!viewport->is_boolean())
                 refuse("viewport has to be true or false, not " + shown(*viewport));
@@ -447,10 +446,10 @@ void check_files(const Script& script, const ScriptFiles& others) {
         for (std::size_t i = 0; i < before; ++i) {
             const Use& other = uses[i];
             // as a person saves over what was opened, and anything anew
-            const bool meant = use.kind == other.kind ||
-                               (use.kind == Kind::saved && other.kind == Kind::opened);
+            const bool meant =
+                use.kind == other.kind || (use.kind == Kind::saved && other.kind == Kind::opened);
             if (meant || use.file != other.file) continue;
-            const std::string what = other.kind == Kind::played  ? "the script itself"
+            const std::string what = other.kind == Kind::played   ? "the script itself"
                                      : other.kind == Kind::opened ? "the scene itself"
                                      : other.kind == Kind::final_picture
                                          ? "the file of --screenshot"

@@ -32,7 +32,7 @@ using nlohmann::json;
 constexpr double frame_seconds = 1.0 / 60;  // of the script's own time, whatever a frame takes
 constexpr int longest_wait = 60 * IVORY_PATIENCE;  // seconds for a final picture
 // A person waits for the surface to follow before moving on; no longer than that for a heavy scene.
-constexpr double patience = 2;  // seconds
+constexpr double patience = 2;          // seconds
 constexpr double between_looks = 0.05;  // seconds: whether somebody wants to stop
 constexpr int frames_to_settle = 3;
 constexpr int most_wheel_steps = 2000;

@@ -96,7 +96,7 @@ struct Viewer::Parts {
     std::array<bool, mouse_button_count> mouse_down{};  // in the frame before
     std::optional<Clock::time_point> edited;  // when the picture that is awaited was asked for
     ViewerTimes times;
-    std::string fault_said;  // the picture's
+    std::string fault_said;         // the picture's
     std::size_t glyphs_loaded = 0;  // of state.glyphs
 
     Parts(Context& the_context, ViewerSettings the_settings)
@@ -115,7 +115,7 @@ struct Viewer::Parts {
         const bool hurry = holds_a_button(input) || something_happened(input);
         const PictureChange change = session.poll(!settings.hold_back_coarse ? FirstPicture::any
                                                   : hurry                    ? FirstPicture::fine
-                                                                             : FirstPicture::settled);
+                                                          : FirstPicture::settled);
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();

@@ -17,7 +17,7 @@ struct WindowSettings {
     std::optional<WindowSize> size;  // points of the screen; without one: as it was left
     int threads = 1;
     std::optional<std::filesystem::path> user_settings;  // none: neither read nor written
-    std::function<void()> stop;  // asked in every frame; may throw
+    std::function<void()> stop;                          // asked in every frame; may throw
     // Called with what ends the loop's sleep, so that `stop` is asked; what it returns is kept for
     // as long as that may be called, from any thread.
     std::function<std::shared_ptr<void>(std::function<void()> wake)> listen;

@@ -4,8 +4,7 @@
 
 namespace ivory {
 
-void ActiveElements::take(const GroupStarts& groups,
-                          std::span<const std::uint32_t> elements) {
+void ActiveElements::take(const GroupStarts& groups, std::span<const std::uint32_t> elements) {
     make_room(elements.size());
     std::copy(elements.begin(), elements.end(), element.begin());
     for (std::size_t group = 0; group < field_groups; ++group) {

@@ -27,8 +27,7 @@ struct ActiveElements {
     [[nodiscard]] std::size_t size() const { return first[field_groups]; }
     // A sorted list, of which nothing more is known; `groups`: where they begin, as in
     // Field::first.
-    void take(const GroupStarts& groups,
-              std::span<const std::uint32_t> elements);
+    void take(const GroupStarts& groups, std::span<const std::uint32_t> elements);
     // The members of clusters.
     void take_members(const Clusters& clusters, const ActiveElements& of);
     // Element i of those, with its bounds, as the last one: there has to be room.

@@ -264,9 +264,8 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     } else {
         sums = bundle_steps().coarse(*field_, opened_on_, scale_, cuts, here.active, w);
     }
-    w.coarse_bounds =
-        stage_bounds(sums, 0x1p-24, u_sums, roundings(w.strong.size + w.weak.size), here.size(),
-                     threshold_, here.rest, slope_unit, 1e-30);
+    w.coarse_bounds = stage_bounds(sums, 0x1p-24, u_sums, roundings(w.strong.size + w.weak.size),
+                                   here.size(), threshold_, here.rest, slope_unit, 1e-30);
     const double added = 1 + static_cast<double>(here.size() + 64) * 4 * u_sums;
     w.strong_bounds = {w.coarse_bounds.above + sums.weak_above * added,
                        w.coarse_bounds.below + sums.weak_below * added,
@@ -312,9 +311,9 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
         }
     }
     const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
-    w.fine_bounds = stage_bounds(
-        sums, 0x1p-53, 0x1p-53, w.compensated ? compensated_roundings : roundings(w.fine.size),
-        active->size(), threshold_, bounded.rest, 1, 1e-280);
+    w.fine_bounds = stage_bounds(sums, 0x1p-53, 0x1p-53,
+                                 w.compensated ? compensated_roundings : roundings(w.fine.size),
+                                 active->size(), threshold_, bounded.rest, 1, 1e-280);
     w.fine_bounds.above += faint.above;
     w.fine_bounds.below += faint.below;
     w.fine_bounds.slope += faint.slope;
@@ -324,8 +323,7 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
 
 void BundleField::complete(Window& w) {
     if (!w.is_complete)
-        complete(*opened_, opened_part_, opened_on_,
-                 fine_cut_ * faint_cut_multiple, w);
+        complete(*opened_, opened_part_, opened_on_, fine_cut_ * faint_cut_multiple, w);
 }
 
 void BundleField::take_opened(const Bounded& bounded, double faint_cut, Window& w) {

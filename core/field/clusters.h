@@ -30,7 +30,7 @@ inline constexpr std::size_t least_range = 8192;
 // elements' F_i(p) add up to no more than above k(d^2 inverse_square), and to no less than
 // -below k(d^2 inverse_square).
 struct Clusters {
-    std::vector<std::uint32_t> first;     // element of each; one more: the field's size
+    std::vector<std::uint32_t> first;  // element of each; one more: the field's size
     GroupStarts first_of_group{};
     std::vector<double> x, y, z, radius;  // of a ball that holds the skeletons
     std::vector<double> above, below;     // sums of the b_i > 0 and of the -b_i > 0

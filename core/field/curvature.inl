@@ -35,9 +35,9 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
         smooth = hn::And(smooth, hn::Ge(inverse, zero));
         outward = LanesOfShape<shape>::outward(e, inverse);
         // no f'' is known of the others
-        const V<Tag> slope = hn::Mul(
-            hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
-            hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more), LanesOf<kind>::slope(d, least, peak)));
+        const V<Tag> slope = hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
+                                     hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),
+                                             LanesOf<kind>::slope(d, least, peak)));
         sums.kinks = hn::Add(sums.kinks, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
     }
     const Bend<Tag> bend = LanesOf<kind>::bend(
@@ -65,7 +65,8 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
     const Reach<double> reach = reach_of(stretch);
     BendLanes<D> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        const auto e = seen_in_field<shape>(field, stretch, scale, hn::LoadU(di, &active.element[i]));
+        const auto e =
+            seen_in_field<shape>(field, stretch, scale, hn::LoadU(di, &active.element[i]));
         const V<D> inverse =
             add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &active.least[i]),
                             hn::LoadU(d, &active.most[i]), hn::LoadU(d, &active.peak[i]), lanes);

@@ -11,8 +11,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/field/window.h"
 #include "core/field/places.inl"
+#include "core/field/window.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
@@ -157,13 +157,14 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const V<Tag> value = hn::Mul(hn::Mul(strength, arrivals.peak), widened);
         const V<Tag> per_length =
             hn::Mul(hn::Mul(hn::Add(widened, widened), strength), arrivals.inverse_width);
-        const V<Tag> whole = hn::Mul(per_length, LanesOf<kind>::slope(d, arrivals.least, arrivals.peak));
+        const V<Tag> whole =
+            hn::Mul(per_length, LanesOf<kind>::slope(d, arrivals.least, arrivals.peak));
         const V<Tag> c_length = hn::Mul(length_of(d, arrivals.place), widened);
         const EntryErrors<Tag> eta =
             etas<shape>(d, on, e, c_length, arrivals.inverse, arrivals.inverse_width);
         const EntryErrors<Tag> off =
             LanesOf<kind>::errors(d, on.u, eta, arrivals.least,
-                            greatest_root<shape>(d, on, arrivals, c_length), arrivals.peak);
+                                  greatest_root<shape>(d, on, arrivals, c_length), arrivals.peak);
 
         M<Tag> is_strong = valid, enters = valid;
         if constexpr (is_coarse) {
@@ -224,7 +225,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         };
         const V<Tag> full = hn::Mul(hn::Mul(c(2 * LanesOf<kind>::slope_sign), e.strength), square);
         put(hn::Mul(arrivals.place.x, per_unit), hn::Mul(arrivals.place.y, per_unit),
-            hn::Mul(arrivals.place.z, per_unit), hn::Mul(square, c(LanesOf<kind>::argument_scale)), 0);
+            hn::Mul(arrivals.place.z, per_unit), hn::Mul(square, c(LanesOf<kind>::argument_scale)),
+            0);
         put(e.strength, hn::IfThenZeroElse(kinked, full), zero, zero, 1);
         if constexpr (has_axis<shape>) {
             put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale), extra,

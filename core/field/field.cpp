@@ -93,8 +93,10 @@ void sum_up(Field& field) {
             minus_log = least < 1 ? std::min(-std::log(least), 700.0) : 0;
         }
         field.cut[i] = with_kernel(field.kernel[i], [&]<class K>() {
-            if constexpr (K::ends) return 1.0;
-            else return K::level(minus_log);
+            if constexpr (K::ends)
+                return 1.0;
+            else
+                return K::level(minus_log);
         });
     }
     field.least_width =

@@ -35,9 +35,9 @@ struct Field {
 
     std::vector<Shape> shape;
     std::vector<KernelKind> kernel;
-    std::vector<double> strength;       // b_i
-    std::vector<double> width;          // w_i
-    std::vector<double> ax, ay, az;     // SkeletonColumns::a, and so on
+    std::vector<double> strength;    // b_i
+    std::vector<double> width;       // w_i
+    std::vector<double> ax, ay, az;  // SkeletonColumns::a, and so on
     std::vector<double> bx, by, bz;
     std::vector<double> radius;
     std::vector<Color> color;           // linear RGB
@@ -49,10 +49,10 @@ struct Field {
 
     // What core/field/bundle.h asks for again and again, computed to nearest.
     std::vector<double> mx, my, mz, extra, length;  // SkeletonColumns::m, and so on
-    std::vector<double> inverse_width;    // 1 / w
-    std::vector<double> inverse_square;   // 1 / w^2
-    std::vector<float> red, green, blue;  // `color`, for what is only looked at
-    bool one_color = true;                // all elements have the same
+    std::vector<double> inverse_width;              // 1 / w
+    std::vector<double> inverse_square;             // 1 / w^2
+    std::vector<float> red, green, blue;            // `color`, for what is only looked at
+    bool one_color = true;                          // all elements have the same
 
     Clusters clusters;
 

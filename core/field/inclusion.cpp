@@ -118,8 +118,10 @@ Interval<double> element_at(const ElementAlongRay& e, double t) {
         if (!(piece.where.lo <= t && t <= piece.where.hi)) continue;
         const SquareAt a = piece.square.at(t);
         k = hull(k, with_kernel(e.kernel, [&]<class K>() {
-                     if constexpr (K::ends) return kernel_over<K>(a.value());
-                     else return K::around(a.s, a.s_radius);
+                     if constexpr (K::ends)
+                         return kernel_over<K>(a.value());
+                     else
+                         return K::around(a.s, a.s_radius);
                  }));
     }
     return k;

@@ -136,7 +136,8 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
         const auto e = seen_in_field<shape>(field, stretch, scale, index);
-        const DistanceRange<D> range = LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
+        const DistanceRange<D> range =
+            LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
         const V<D> least =
             hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), constant(less));
         const V<D> peak = LanesOf<kind>::peak(d, least);
@@ -238,7 +239,8 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
     const V<F> widened = hn::Set(d, Margins<float>::more),
                reduced = hn::Set(d, Margins<float>::less);
     const auto e = seen_nearby<shape>(candidates, reach, first);
-    const DistanceRange<F> range = LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
+    const DistanceRange<F> range =
+        LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
     const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
     const V<F> peak = LanesOf<kind>::peak(d, least);
     const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);

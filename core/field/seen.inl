@@ -64,8 +64,10 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
     if constexpr (has_axis<shape>) {
         e.m = {column(field.mx), column(field.my), column(field.mz)};
         e.extra = column(field.extra);
-        if constexpr (has_length<shape>) e.size = column(field.length);
-        else e.size = e.extra;
+        if constexpr (has_length<shape>)
+            e.size = column(field.length);
+        else
+            e.size = e.extra;
     }
     e.strength = hn::Mul(column(field.strength), constant(scale));
     e.inverse_square = column(field.inverse_square);
@@ -86,8 +88,10 @@ HWY_INLINE Seen<F, shape> seen_nearby(const NearElements& near, const Reach<floa
     if constexpr (has_axis<shape>) {
         e.m = {column(near.mx), column(near.my), column(near.mz)};
         e.extra = column(near.extra);
-        if constexpr (has_length<shape>) e.size = column(near.length);
-        else e.size = e.extra;
+        if constexpr (has_length<shape>)
+            e.size = column(near.length);
+        else
+            e.size = e.extra;
     }
     e.strength = column(near.strength);
     e.inverse_square = column(near.inverse_square);
@@ -98,8 +102,9 @@ HWY_INLINE Seen<F, shape> seen_nearby(const NearElements& near, const Reach<floa
 // Calls visit.operator()<shape, kernel>(group).
 template <class Visit>
 HWY_INLINE void for_all_groups(const Visit& visit) {
-    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>()
-                               HWY_ATTR { visit.template operator()<shape, kind>(group_of(shape, kind)); });
+    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR {
+        visit.template operator()<shape, kind>(group_of(shape, kind));
+    });
 }
 
 HWY_INLINE double sum_of(V<D> x) { return hn::GetLane(hn::SumOfLanes(D(), x)); }

@@ -62,8 +62,7 @@ double share_of(const Field& field) {
 ElementList list_of(const Field& field, const ElementList& parent, std::size_t candidates,
                     const PeakSums& peaks) {
     ElementList list;
-    const Rest rest =
-        Rest{parent.rest.hi, -parent.rest.lo}.with(peaks, candidates, 0x1p-52);
+    const Rest rest = Rest{parent.rest.hi, -parent.rest.lo}.with(peaks, candidates, 0x1p-52);
     list.rest = {-rest.below, rest.above};
     list.certainly_empty = certainly_below(field.threshold, peaks, rest, candidates, 0x1p-52);
     return list;

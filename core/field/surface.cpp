@@ -18,8 +18,10 @@ Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
 // The s beyond which nothing is added.
 double end_of(KernelKind kind) {
     return with_kernel(kind, []<class K>() {
-        if constexpr (K::ends) return 1.0;
-        else return K::vanishes;
+        if constexpr (K::ends)
+            return 1.0;
+        else
+            return K::vanishes;
     });
 }
 

@@ -68,8 +68,7 @@ HWY_INLINE V<Tag> exp2_minus(Tag d, V<Tag> x) {
 #if HWY_TARGET == HWY_AVX3
     return times_power_of_two(series, hn::Sub(r, within));
 #else
-    const auto exponent =
-        hn::ShiftLeft<(sizeof(Real) == 8 ? 52 : 23)>(hn::BitCast(bits, shifted));
+    const auto exponent = hn::ShiftLeft<(sizeof(Real) == 8 ? 52 : 23)>(hn::BitCast(bits, shifted));
     return hn::BitCast(d, hn::Add(hn::BitCast(bits, series), exponent));
 #endif
 }

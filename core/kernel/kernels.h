@@ -44,7 +44,8 @@ concept Kernel = requires(double x, const Interval<double>& range) {
     { K::plain(x) } -> std::same_as<double>;
     { K::touching_point(x) } -> std::same_as<double>;
     { K::steepest_beyond(x) } -> std::same_as<double>;
-} && (K::ends ? requires {
+}
+&& (K::ends ? requires {
     { K::greatest_slope } -> std::convertible_to<double>;
     { K::greatest_curvature } -> std::convertible_to<double>;
     { K::greatest_root_slope } -> std::convertible_to<double>;

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/kernels.h"
 #include "core/field/surface.h"
+#include "core/kernel/kernels.h"
 #include "core/math/direction.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_fault.h"

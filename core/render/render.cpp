@@ -226,7 +226,8 @@ class FrameJob::Work {
         step -= region_order_.size();
         const std::size_t pass = step / block_order_.size();
         const std::size_t block = block_order_[step % block_order_.size()];
-        if (pass > 0 && !wait_until(passes_done_[block], static_cast<int>(pass), stop_)) return false;
+        if (pass > 0 && !wait_until(passes_done_[block], static_cast<int>(pass), stop_))
+            return false;
         if (!take_block(block, pass, worker)) return false;
         passes_done_[block].store(static_cast<int>(pass) + 1, std::memory_order_release);
         return true;

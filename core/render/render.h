@@ -21,7 +21,7 @@ enum class Task : std::uint8_t {
 };
 
 enum class Order : std::uint8_t {
-    plain,           // each tile once, all of its pixels
+    plain,  // each tile once, all of its pixels
     // One pixel for each 64 x 64, then 8 x 8, then all: none is traced twice. Where few tiles are
     // selected it begins with smaller squares, 8 x 8 at the least; what begins with 16 x 16 goes on
     // to all at once.
@@ -63,7 +63,7 @@ struct JobReport {
     double seconds = 0;      // from start to the last worker's end
     double shade_share = 0;  // of the workers' time, 0..1; the rest went into tracing
     Counts counts;
-    std::size_t tiles_traced = 0;      // tiles of which this job traced or shaded a pixel
+    std::size_t tiles_traced = 0;  // tiles of which this job traced or shaded a pixel
     // Elements in the list of a tile that is not empty; shading does not count them.
     std::size_t elements_reached = 0;
 };

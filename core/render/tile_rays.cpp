@@ -32,9 +32,8 @@ void TileRays::gather(const View& view, const Frame& frame, const PixelRect& rec
     }
     // The one of that number, or of that rectangle where the tile is cut off.
     const auto bundle = [&](std::size_t number, const PixelRect& part_of_tile) {
-        return in_parts && is_whole
-                   ? bundles[number]
-                   : bundle_around(view, frame.width, frame.height, part_of_tile);
+        return in_parts && is_whole ? bundles[number]
+                                    : bundle_around(view, frame.width, frame.height, part_of_tile);
     };
     const auto add_part = [&](std::size_t number, const PixelRect& part_of_tile) {
         const Bundle of_part = bundle(number, part_of_tile);

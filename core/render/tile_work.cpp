@@ -45,8 +45,7 @@ void TileWorker::mark_reached(const ElementList& list) {
     for (const std::uint32_t element : list.elements) reached[element] = 1;
     const std::vector<std::uint32_t>& first = picture_.field->clusters.first;
     for (const std::uint32_t cluster : list.clusters) {
-        std::fill_n(&reached[first[cluster]], first[cluster + 1] - first[cluster],
-                    std::uint8_t{1});
+        std::fill_n(&reached[first[cluster]], first[cluster + 1] - first[cluster], std::uint8_t{1});
     }
 }
 
@@ -54,7 +53,7 @@ bool TileWorker::trace(std::size_t index, int stride, bool first) {
     const TileState& tile = canvas_.tiles[index];
     if (!share(index)) return false;
     gather(index, stride, first ? 0 : tile.stride);
-        const Field& field = *picture_.field;
+    const Field& field = *picture_.field;
     surfaces_.exact = !canvas_.frame.surface.empty();
     trace_bundle(field, tile.list, lists_.all(), tile_.rays, *picture_.method, picture_.options,
                  isolations_, wants_surface() ? &surfaces_ : nullptr, counts);
@@ -79,8 +78,7 @@ bool TileWorker::share(std::size_t tile) {
 
 void TileWorker::gather(std::size_t tile, int stride, int coarser, bool with_parts) {
     tile_.gather(picture_.view, canvas_.frame, canvas_.grid.tiles.rect(tile), stride, coarser,
-                 with_parts &&
-                     canvas_.tiles[tile].list.most_elements() >= Descent::parts_elements);
+                 with_parts && canvas_.tiles[tile].list.most_elements() >= Descent::parts_elements);
 }
 
 // The surface at those m that are finite; the others keep theirs.
@@ -93,8 +91,7 @@ void TileWorker::find_surface(const ElementList& list,
 // The colours of the surface in the light.
 void TileWorker::paint() {
     if (!shaded()) return;
-    shade_lanes(picture_.lighting, tile_.rays, surfaces_,
-                {colors_.data(), tile_.size()});
+    shade_lanes(picture_.lighting, tile_.rays, surfaces_, {colors_.data(), tile_.size()});
 }
 
 // One of those runs.
@@ -151,8 +148,7 @@ bool TileWorker::reached_by_recolored(const ElementList& list) const {
     const std::vector<std::uint32_t>& indices = in_clusters ? list.clusters : list.elements;
     auto from = indices.begin();
     for (const std::uint32_t element : settings_.recolored) {
-        const std::uint32_t wanted =
-            in_clusters ? picture_.field->clusters.of(element) : element;
+        const std::uint32_t wanted = in_clusters ? picture_.field->clusters.of(element) : element;
         from = std::lower_bound(from, indices.end(), wanted);
         if (from == indices.end()) return false;
         if (*from == wanted) return true;
@@ -162,8 +158,7 @@ bool TileWorker::reached_by_recolored(const ElementList& list) const {
 
 // Whether such an element may have had a share in what the tile looks like.
 bool TileWorker::is_recolored(const TileState& tile) const {
-    return tile.looked_at.meets(recolored_) &&
-           (!tile.has_list || reached_by_recolored(tile.list));
+    return tile.looked_at.meets(recolored_) && (!tile.has_list || reached_by_recolored(tile.list));
 }
 
 bool TileWorker::shade_again(std::size_t index) {

@@ -325,17 +325,20 @@ class Parser {
                     escape(expected);
                     break;
                 case '\n':
-                    refuse("invalid string: control character U+000A (LF) must be escaped to "
-                           "\\u000A or \\n",
-                           expected);
+                    refuse(
+                        "invalid string: control character U+000A (LF) must be escaped to "
+                        "\\u000A or \\n",
+                        expected);
                 case '\r':
-                    refuse("invalid string: control character U+000D (CR) must be escaped to "
-                           "\\u000D or \\r",
-                           expected);
+                    refuse(
+                        "invalid string: control character U+000D (CR) must be escaped to "
+                        "\\u000D or \\r",
+                        expected);
                 case '\t':
-                    refuse("invalid string: control character U+0009 (HT) must be escaped to "
-                           "\\u0009 or \\t",
-                           expected);
+                    refuse(
+                        "invalid string: control character U+0009 (HT) must be escaped to "
+                        "\\u0009 or \\t",
+                        expected);
                 default:
                     refuse_end();
             }

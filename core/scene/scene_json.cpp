@@ -37,7 +37,9 @@ constexpr std::array<std::string_view, 7> element_keys{"shape",    "name",  "col
                                                        "strength", "width", "visible"};
 template <class S>
 constexpr auto skeleton_keys = std::apply(
-    [](const auto&... member) { return std::array<std::string_view, sizeof...(member)>{member.key...}; },
+    [](const auto&... member) {
+        return std::array<std::string_view, sizeof...(member)>{member.key...};
+    },
     S::members());
 template <class S>
 constexpr auto keys_of_element = joined(skeleton_keys<S>, element_keys);
@@ -251,9 +253,8 @@ void read_element(const Node& node, Element& element) {
     const ObjectFormat format{word_with_article<S>, keys_of_element<S>, skeleton_keys<S>};
     const Members members(node, format);
     S& skeleton = element.skeleton.emplace<S>();
-    for_members<S>([&](const auto& member) {
-        read(members.required(member.key), skeleton.*member.value);
-    });
+    for_members<S>(
+        [&](const auto& member) { read(members.required(member.key), skeleton.*member.value); });
     read_if_there(members, "name", element.name);
     read_if_there(members, "color", element.color);
     read_if_there(members, "kernel", element.kernel);

@@ -73,9 +73,8 @@ void append_members(Members members, const Element& element) {
     if (element.name) members.add("name") += nlohmann::json(*element.name).dump();
     std::visit(
         [&]<class S>(const S& skeleton) {
-            for_members<S>([&](const auto& member) {
-                members.add(member.key, skeleton.*member.value);
-            });
+            for_members<S>(
+                [&](const auto& member) { members.add(member.key, skeleton.*member.value); });
         },
         element.skeleton);
     members.add("color", element.color);

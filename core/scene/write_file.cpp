@@ -60,8 +60,8 @@ std::string open_file(int descriptor) { return "/proc/self/fd/" + std::to_string
 // A short name of our own, since the target's may be as long as names can be.
 fs::path temporary_name(const fs::path& target) {
     static std::atomic<unsigned> count{0};
-    return target.parent_path() / (".ivory-" + std::to_string(::getpid()) + "-" +
-                                   std::to_string(count++) + ".tmp");
+    return target.parent_path() /
+           (".ivory-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp");
 }
 
 const char* remedy_for(int error) {

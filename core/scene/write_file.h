@@ -48,9 +48,9 @@ class AtomicFile {
     // A name for the file that has none; 0, or the error, EEXIST where something has it.
     [[nodiscard]] int give_name(const std::filesystem::path& name) const;
 
-    std::string label_;                // what messages call the target
-    std::filesystem::path target_;     // symbolic links resolved; empty where written straight
-    std::filesystem::path temporary_;  // empty where the file being written has no name
+    std::string label_;                    // what messages call the target
+    std::filesystem::path target_;         // symbolic links resolved; empty where written straight
+    std::filesystem::path temporary_;      // empty where the file being written has no name
     std::optional<unsigned> permissions_;  // of the file that stood there
     int descriptor_ = -1;                  // < 0: nothing is made yet, or no longer open
 };

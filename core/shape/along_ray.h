@@ -103,7 +103,8 @@ struct Relative {
     }
 };
 
-inline Relative relative_to(const Vec3d& c, double width, const Vec3d& origin, const Vec3d& direction) {
+inline Relative relative_to(const Vec3d& c, double width, const Vec3d& origin,
+                            const Vec3d& direction) {
     const double scale = 1 / width;
     Relative r{origin, direction, c, scale, scale * (origin - c), scale * direction, 0, 0};
     r.offset_norm = one_norm(r.offset_vector);
@@ -113,7 +114,8 @@ inline Relative relative_to(const Vec3d& c, double width, const Vec3d& origin, c
 
 // The t of the span nearest to the foot of the perpendicular on offset + t direction. Any t of the
 // span is right as a reference; this one is the sharpest.
-inline double foot(const Vec3d& offset_vector, const Vec3d& direction, const Interval<double>& span) {
+inline double foot(const Vec3d& offset_vector, const Vec3d& direction,
+                   const Interval<double>& span) {
     const double square = dot(direction, direction);
     const double t = square > 0 ? -dot(offset_vector, direction) / square : span.lo;
     return std::min(std::max(t, span.lo), span.hi);
@@ -121,7 +123,7 @@ inline double foot(const Vec3d& offset_vector, const Vec3d& direction, const Int
 
 // |v_r + (t - t_r) direction|^2 with |dv_r| <= eta and |d direction| <= nu.
 inline MovingSquare moving_square(double reference, const Vec3d& v, const Vec3d& direction,
-                           const Interval<double>& span, double eta, double nu) {
+                                  const Interval<double>& span, double eta, double nu) {
     MovingSquare q;
     q.reference = reference;
     q.alpha = dot(v, v);

@@ -25,7 +25,8 @@ struct CircleSkeleton {
 
     static constexpr std::string_view word = "circle";
     static constexpr std::string_view label = "Circle";
-    static constexpr std::string_view distance = "((rho - r)² + h²)^½, h above the plane, rho from the axis";
+    static constexpr std::string_view distance =
+        "((rho - r)² + h²)^½, h above the plane, rho from the axis";
     static constexpr auto members() {
         return std::tuple{place("center", "Centre", &CircleSkeleton::center),
                           direction("normal", "Normal", &CircleSkeleton::normal),
@@ -46,7 +47,8 @@ struct CircleSkeleton {
     static Surroundings surroundings(const SkeletonColumns& c) { return {{c.a, c.a}, c.radius}; }
     // Along axis k it reaches r sqrt(1 - n_k^2), written without its cancellation.
     static Box3 box(const SkeletonColumns& c) {
-        const double largest = std::fmax(std::abs(c.b.x), std::fmax(std::abs(c.b.y), std::abs(c.b.z)));
+        const double largest =
+            std::fmax(std::abs(c.b.x), std::fmax(std::abs(c.b.y), std::abs(c.b.z)));
         int exponent = 0;
         std::frexp(largest, &exponent);
         const Vec3d n{std::ldexp(c.b.x, -exponent), std::ldexp(c.b.y, -exponent),
@@ -136,7 +138,8 @@ struct CircleSkeleton {
         const Vector n = natural::unit(c.b);
         e.radius = quick::mul(scale, Span(c.radius));
         e.along = {inner(n, start), inner(n, rate)};
-        e.across = moving(minus(start, times(e.along.start, n)), minus(rate, times(e.along.rate, n)));
+        e.across =
+            moving(minus(start, times(e.along.start, n)), minus(rate, times(e.along.rate, n)));
     }
     template <class Number>
     static Number square(const natural::RaySkeleton& e, const Number& t) {
@@ -236,8 +239,8 @@ struct ShapeLanes<CircleSkeleton> {
     // s'' w^2 / 2 = 1 - r rho'' lies in 1 - r / rho .. 1. Returns an upper bound of 1 / rho, below 0
     // where rho may be too small for one.
     template <class Tag>
-    static HWY_INLINE V<Tag> inverse_rho(const Seen<Tag, shape>& e,
-                                         const Reach<hn::TFromD<Tag>>& s, V<Tag> error) {
+    static HWY_INLINE V<Tag> inverse_rho(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                         V<Tag> error) {
         using Real = hn::TFromD<Tag>;
         using Margin = Margins<Real>;
         const Tag d;

@@ -51,8 +51,7 @@ inline Vector times(const Span& s, const Vector& v) {
 }
 
 inline Span inner(const Vector& a, const Vector& b) {
-    return quick::add(quick::add(quick::mul(a.x, b.x), quick::mul(a.y, b.y)),
-                      quick::mul(a.z, b.z));
+    return quick::add(quick::add(quick::mul(a.x, b.x), quick::mul(a.y, b.y)), quick::mul(a.z, b.z));
 }
 
 inline Vector vector(const Vec3d& p) { return {Span(p.x), Span(p.y), Span(p.z)}; }

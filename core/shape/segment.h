@@ -20,7 +20,8 @@ struct SegmentSkeleton {
 
     static constexpr std::string_view word = "segment";
     static constexpr std::string_view label = "Segment";
-    static constexpr std::string_view distance = "to the foot of p on the line, kept between the ends";
+    static constexpr std::string_view distance =
+        "to the foot of p on the line, kept between the ends";
     static constexpr auto members() {
         return std::tuple{place("a", "End a", &SegmentSkeleton::a),
                           place("b", "End b", &SegmentSkeleton::b)};
@@ -119,7 +120,8 @@ struct SegmentSkeleton {
         e.piece_count = 0;
         bool fits = true;
         e.active = Interval<double>::empty_set();
-        const auto add = [&](const MovingSquare& square, const Interval<double>& where, double reach) {
+        const auto add = [&](const MovingSquare& square, const Interval<double>& where,
+                             double reach) {
             e.active = hull(e.active, intersection(sublevel(square, cut), where));
             e.pieces[e.piece_count++] = {square, where};
             fits = fits && usable(square.kappa, reach + square.rho, mag(span));
@@ -136,7 +138,8 @@ struct SegmentSkeleton {
             // A ray along the segment leaves no speed across it, which the lemma allows.
             e.active = hull(e.active, intersection(sublevel(square, cut), where));
             e.pieces[e.piece_count++] = {square, where};
-            fits = fits && usable(from_a.direction_norm, from_a.offset_norm + square.rho, mag(span));
+            fits =
+                fits && usable(from_a.direction_norm, from_a.offset_norm + square.rho, mag(span));
         }
         if (const auto where = within(leaves.lo, span.hi); last_possible && !is_empty(where)) {
             add(from_point(last, where), where, last.offset_norm);
@@ -207,8 +210,7 @@ struct ShapeLanes<SegmentSkeleton> {
     static HWY_INLINE V<Tag> distance_at(const Seen<Tag, shape>& e,
                                          const Vec3<hn::TFromD<Tag>>& axis, hn::TFromD<Tag> t) {
         const Vec3v<Tag> from = e.from_axis(axis, t);
-        return length_of(Tag(),
-                         less_share(from, e.m, clamped<Tag>(dot<Tag>(from, e.m), e.extra)));
+        return length_of(Tag(), less_share(from, e.m, clamped<Tag>(dot<Tag>(from, e.m), e.extra)));
     }
 
     // On a long stretch a ball around the skeleton, or its whole line, says more than (1). Between

@@ -174,8 +174,8 @@ HWY_INLINE DistanceRange<Tag> range_of_rays(Tag d, V<Tag> magnitude, V<Tag> near
                                             const Reach<hn::TFromD<Tag>>& s, V<Tag> error) {
     constexpr auto widened = Margins<hn::TFromD<Tag>>::more;
     return {at_least_0(hn::Sub(near, aside_of(d, magnitude, s))),
-            hn::Add(far, hn::Add(error, hn::Set(d, (s.t_offset + s.end) * s.spread * widened *
-                                                       widened)))};
+            hn::Add(far, hn::Add(error,
+                                 hn::Set(d, (s.t_offset + s.end) * s.spread * widened * widened)))};
 }
 
 // A window as its entries see it, in their lengths.

@@ -23,11 +23,10 @@ void Descent::begin(std::span<const BundlePart> parts, const Directions& rays, i
     open_.clear();
     if (is_empty(span_)) return;
     field_.measure_on(is_shared_ ? common_ : parts[0]);
-    open_.push_back(is_shared_ ? shared_piece(0, 0)
-                               : Piece{.begin = span_.lo,
-                                       .end = span_.hi,
-                                       .part = parts[0],
-                                       .root = &field_.list()});
+    open_.push_back(
+        is_shared_
+            ? shared_piece(0, 0)
+            : Piece{.begin = span_.lo, .end = span_.hi, .part = parts[0], .root = &field_.list()});
 }
 
 Window* Descent::take(const Piece& piece) {
@@ -39,8 +38,7 @@ Window* Descent::take_own(const Piece& piece) {
     const double t0 = piece.begin, t1 = piece.end, pad = BundleField::pad_of(t0, t1);
     const BundlePart& part = piece.part;
     if (bounded_by_depth_.size() <= piece.depth) bounded_by_depth_.resize(piece.depth + 1);
-    const Bounded& parent =
-        piece.depth == 0 ? *piece.root : bounded_by_depth_[piece.depth - 1];
+    const Bounded& parent = piece.depth == 0 ? *piece.root : bounded_by_depth_[piece.depth - 1];
     Bounded& here = bounded_by_depth_[piece.depth];
     const bool divisible = is_divisible(piece);
     const bool halves = divisible && field_.is_long(t0, t1);
@@ -89,8 +87,7 @@ void Descent::part_up(const Piece& piece) {
 bool Descent::has_parts(const Piece& piece) const {
     const BundlePart& part = piece.part;
     return piece.depth < greatest_depth &&
-           (!has_single_rays(part) ||
-            (parts_.size() > 1 && part.spread > 0 && rays_.x != nullptr));
+           (!has_single_rays(part) || (parts_.size() > 1 && part.spread > 0 && rays_.x != nullptr));
 }
 
 Window* Descent::give_up() {
@@ -136,8 +133,8 @@ bool Descent::bound_shared(std::size_t index, bool halves) {
     if (!here.is_bounded) {
         const Bounded& parent = index == 0 ? shared_list_ : shared_[here.parent].bounded;
         const double pad = BundleField::pad_of(here.begin, here.end);
-        here.is_ended = !field_.bound(parent, here.bounded, common_, here.begin - pad,
-                                      here.end + pad, halves);
+        here.is_ended =
+            !field_.bound(parent, here.bounded, common_, here.begin - pad, here.end + pad, halves);
         here.is_bounded = true;
         if (field_.is_stopped()) left_ = 0;
     }
@@ -164,8 +161,7 @@ Descent::Piece Descent::shared_piece(std::size_t index, std::size_t depth) const
 // Long stretches of the common bundle, as far as this one needs them; and then its own.
 Window* Descent::take_shared(const Piece& piece) {
     const auto go_on_alone = [&](const Bounded& root) {
-        open_.push_back(
-            {.begin = piece.begin, .end = piece.end, .part = parts_[0], .root = &root});
+        open_.push_back({.begin = piece.begin, .end = piece.end, .part = parts_[0], .root = &root});
         return nullptr;
     };
     if (is_too_wide_at(piece.begin)) {  // the whole is not, or nothing is shared

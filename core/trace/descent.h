@@ -84,8 +84,8 @@ class Descent {
     struct Piece {
         double begin = 0, end = 0;
         BundlePart part;
-        std::size_t depth = 0;         // halvings and partings, of the bundle or of what is shared
-        std::size_t shared = own;      // index
+        std::size_t depth = 0;          // halvings and partings, of the bundle or of what is shared
+        std::size_t shared = own;       // index
         const Bounded* root = nullptr;  // at depth 0: what it is a part of
 
         [[nodiscard]] bool is_shared() const { return shared != own; }
@@ -134,7 +134,7 @@ class Descent {
     Interval<double> span_ = Interval<double>::empty_set();
     std::span<const BundlePart> parts_;
     Directions rays_;
-    std::vector<Piece> open_;               // the last comes next
+    std::vector<Piece> open_;                // the last comes next
     std::vector<Bounded> bounded_by_depth_;  // what the pieces above the next one are bounded by
     BundlePart part_;                        // of the window
     int left_ = 0;                           // of the budget

@@ -6,8 +6,8 @@
 #define IVORY_CORE_TRACE_FIELD_LANES_INL
 #endif
 
-#include "core/shape/shape_lanes.inl"
 #include "core/field/window.h"
+#include "core/shape/shape_lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
@@ -45,10 +45,10 @@ HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
     std::size_t first = 0;
     for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR
                            __attribute__((always_inline)) {
-        const std::uint32_t count = counts[group_of(shape, kind)];
-        if (count != 0) visit.template operator()<shape, kind>(first, count);
-        first += count;
-    });
+                               const std::uint32_t count = counts[group_of(shape, kind)];
+                               if (count != 0) visit.template operator()<shape, kind>(first, count);
+                               first += count;
+                           });
 }
 
 template <class Tag>

@@ -33,8 +33,9 @@ struct RungFacts {
 // In order. The first five are PacketTracer's (core/trace/packet.cpp), the sixth to eighth one ray's
 // (core/trace/methods/proved.cpp), the last the door's (core/trace/trace.cpp).
 inline constexpr std::array ladder{
-    RungFacts{Rung::walk, "walk", "of the window, the strong ones; near the surface the weak ones too",
-              "float", "f < 0 up to the place from which f rises to a root; or on all of the window",
+    RungFacts{Rung::walk, "walk",
+              "of the window, the strong ones; near the surface the weak ones too", "float",
+              "f < 0 up to the place from which f rises to a root; or on all of the window",
               "walk_again"},
     RungFacts{Rung::enclose, "enclose", "of the window, all", "double, faint ones in float",
               "the two grid lines about the root", "enclose_more"},

@@ -33,8 +33,9 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
         const KernelValue<D> value =
             LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
         const double inverse_square = entry[k].inverse_square * (1 / LanesOf<kind>::argument_scale);
-        const V<D> slope = hn::Mul(
-            hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength * inverse_square), value.dk);
+        const V<D> slope =
+            hn::Mul(hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength * inverse_square),
+                    value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
@@ -110,12 +111,14 @@ struct LookSum {
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32_t* element,
                          std::uint32_t count, const Field& field, const Vec3v<F>& p, LookSum& sum) {
-    constexpr auto to_slope = static_cast<float>(2 * LanesOf<kind>::slope_sign / LanesOf<kind>::argument_scale);
+    constexpr auto to_slope =
+        static_cast<float>(2 * LanesOf<kind>::slope_sign / LanesOf<kind>::argument_scale);
     for (std::uint32_t k = 0; k < count; ++k) {
         const BundleEntry<float>& e = entry[k];
         V<F> square;
         const Vec3v<F> away = away_from<shape>(d, e, p, square);
-        const KernelValue<F> value = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
+        const KernelValue<F> value =
+            LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
         const V<F> slope = hn::Mul(hn::Set(d, to_slope * e.strength * e.inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
@@ -133,7 +136,8 @@ HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32
 // The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
 // they bound the errors of F and of |grad F|.
 Looked look(const Window& window, const Field& field, double unit, double limit, const Lanes& lanes,
-            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces, Cancellation& stop) {
+            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces,
+            Cancellation& stop) {
     const F d;
     const D wide;
     const std::size_t N = hn::Lanes(d);

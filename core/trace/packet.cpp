@@ -155,9 +155,9 @@ bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
 }
 
 void PacketTracer::walk(const Window& window, const BundlePart& part, Job& job) {
-    const Walked walked = packet_steps().walk(
-        window, descent_.field().threshold(), descent_.field().unit(), job.settings.greatest_cell,
-        part.first, part.end, lanes_, job.counts.stop);
+    const Walked walked = packet_steps().walk(window, descent_.field().threshold(),
+                                              descent_.field().unit(), job.settings.greatest_cell,
+                                              part.first, part.end, lanes_, job.counts.stop);
     job.counts.evaluations += walked.steps;
     job.counts.element_evaluations +=
         walked.steps * window.strong.size + walked.close_steps * window.weak.size;
@@ -218,9 +218,8 @@ void PacketTracer::walk_again(const BundlePart& part, Job& job) {
         std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                    std::int32_t{Lanes::doubtful}));
     const Window& whole = descent_.field().refined();
-    const std::uint64_t steps =
-        packet_steps().walk_again(whole, descent_.field().threshold(), part.first, part.end,
-                                  lanes_, counts.stop);
+    const std::uint64_t steps = packet_steps().walk_again(
+        whole, descent_.field().threshold(), part.first, part.end, lanes_, counts.stop);
     counts.evaluations += steps;
     counts.element_evaluations += steps * whole.fine.size;
     enclose_lanes(whole, 0, part.first, part.end, Lanes::undecided, Lanes::undecided, job);

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/field/window.h"
 #include "core/field/field.h"
+#include "core/field/window.h"
 #include "core/interval/interval.h"
 #include "core/math/cancellation.h"
 #include "core/math/vec3.h"
@@ -87,8 +87,8 @@ struct PacketSteps {
     // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,
     // in float: within 2^-8, or nx = NaN where float might lose more.
     Looked (*look)(const Window& window, const Field& field, double unit, double limit,
-                   const Lanes& lanes, std::size_t first, std::size_t end,
-                   BundleSurfaces& surfaces, Cancellation& stop);
+                   const Lanes& lanes, std::size_t first, std::size_t end, BundleSurfaces& surfaces,
+                   Cancellation& stop);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.

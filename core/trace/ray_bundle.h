@@ -13,9 +13,9 @@ struct RayBundle {
     static constexpr std::size_t capacity = 256;
     static constexpr std::size_t room = capacity + 16;  // vectors are read whole
 
-    Bundle bundle;          // holds all rays; their directions have length 1 within 2^-50
+    Bundle bundle;  // holds all rays; their directions have length 1 within 2^-50
     const CommonBundle* common = nullptr;  // that this one is a part of
-    std::size_t count = 0;  // 0 .. capacity
+    std::size_t count = 0;                 // 0 .. capacity
     alignas(64) std::array<double, room> dx, dy, dz;
     // None, or the bundle itself and then its parts, as core/field/bundle.h wants them. What a part
     // is must not depend on which rays there are, or answers would.

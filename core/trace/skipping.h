@@ -34,7 +34,7 @@ struct SkippingCounts {
     std::uint64_t stretches = 0, stretches_ended = 0;    // bounded; ended by the sum of peaks
     std::uint64_t windows = 0;                           // in which rays were walked
     std::uint64_t rays = 0;                              // in packets
-    std::uint64_t rays_alone = 0;     // traced one at a time, after a packet or without one
+    std::uint64_t rays_alone = 0;  // traced one at a time, after a packet or without one
 
     SkippingCounts& operator+=(const SkippingCounts& other) {
         list_elements += other.list_elements;

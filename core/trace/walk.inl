@@ -148,8 +148,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             // The parabola below f: with a zero in the window, g rises up to there.
             const LatestZero<Tag> latest = latest_zero(d, f_lo, slope_lo, fall);
             const V<Tag> latest_tau = hn::Add(tau, latest.x);
-            const M<Tag> rises =
-                hn::And(walking, hn::And(latest.is_firm, hn::Le(latest_tau, end)));
+            const M<Tag> rises = hn::And(walking, hn::And(latest.is_firm, hn::Le(latest_tau, end)));
 
             // The parabola above f: up to its zero there is no root.
             const V<Tag> quotient = parabola_zero(d, f_hi, slope_hi, rise);

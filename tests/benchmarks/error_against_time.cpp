@@ -196,11 +196,12 @@ void check_reference(const Scene& scene, const Picture& picture, const Frame& fr
         worst_normal = std::fmax(worst_normal, verdict.normal_error);
         worst_color = std::fmax(worst_color, verdict.color_error);
     }
-    std::fprintf(stderr,
-                 "%s: the reference on %d pixels against 256 bits: %d faults, %d undecided, greatest "
-                 "error of t %.1e, normal %.1e, colour %.1e\n",
-                 options.name.c_str(), options.sample, faults, undecided, worst_t, worst_normal,
-                 worst_color);
+    std::fprintf(
+        stderr,
+        "%s: the reference on %d pixels against 256 bits: %d faults, %d undecided, greatest "
+        "error of t %.1e, normal %.1e, colour %.1e\n",
+        options.name.c_str(), options.sample, faults, undecided, worst_t, worst_normal,
+        worst_color);
     if (faults > 0) throw Error("the reference is wrong: nothing can be compared with it");
 }
 
@@ -269,7 +270,8 @@ void measure(const Options& options) {
     patient.limit = 600;
     const Picture truth = picture_of(scene, options, find_method("proved"), 1e-12);
     Canvas reference(options.width, options.height, true);
-    if (!paint(truth, reference, patient, true).complete) throw Error("the reference takes too long");
+    if (!paint(truth, reference, patient, true).complete)
+        throw Error("the reference takes too long");
     check_reference(scene, truth, reference.frame, options);
 
     print_header();

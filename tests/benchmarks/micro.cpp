@@ -114,20 +114,19 @@ const char* word(Shape shape) {
 
 void register_all() {
     using I = Interval<double>;
-    benchmark::RegisterBenchmark("interval/add", [](auto& s) {
-        binary(s, [](const I& a, const I& b) { return a + b; });
-    });
-    benchmark::RegisterBenchmark("interval/mul", [](auto& s) {
-        binary(s, [](const I& a, const I& b) { return a * b; });
-    });
-    benchmark::RegisterBenchmark("interval/div", [](auto& s) {
-        binary(s, [](const I& a, const I& b) { return a / b; });
-    });
+    benchmark::RegisterBenchmark(
+        "interval/add", [](auto& s) { binary(s, [](const I& a, const I& b) { return a + b; }); });
+    benchmark::RegisterBenchmark(
+        "interval/mul", [](auto& s) { binary(s, [](const I& a, const I& b) { return a * b; }); });
+    benchmark::RegisterBenchmark(
+        "interval/div", [](auto& s) { binary(s, [](const I& a, const I& b) { return a / b; }); });
     benchmark::RegisterBenchmark("interval/sqr", [](auto& s) {
-        unary(s, [](const I& a) { return sqr(a); }, -2, 2);
+        unary(
+            s, [](const I& a) { return sqr(a); }, -2, 2);
     });
     benchmark::RegisterBenchmark("interval/sqrt", [](auto& s) {
-        unary(s, [](const I& a) { return sqrt(a); }, 0, 2);
+        unary(
+            s, [](const I& a) { return sqrt(a); }, 0, 2);
     });
     benchmark::RegisterBenchmark("quick/add", [](auto& s) {
         binary(s, [](const I& a, const I& b) { return quick::add(a, b); });
@@ -136,34 +135,37 @@ void register_all() {
         binary(s, [](const I& a, const I& b) { return quick::mul(a, b); });
     });
     benchmark::RegisterBenchmark("quick/sqr", [](auto& s) {
-        unary(s, [](const I& a) { return quick::sqr(a); }, -2, 2);
+        unary(
+            s, [](const I& a) { return quick::sqr(a); }, -2, 2);
     });
     benchmark::RegisterBenchmark("exp/interval", [](auto& s) {
-        unary(s, [](const I& a) { return exp(a); }, -20, 0);
+        unary(
+            s, [](const I& a) { return exp(a); }, -20, 0);
     });
     benchmark::RegisterBenchmark("exp/minus", [](auto& s) {
-        unary(s, [](const I& a) { return exp_minus(-a.lo, 1e-12); }, -20, 0);
+        unary(
+            s, [](const I& a) { return exp_minus(-a.lo, 1e-12); }, -20, 0);
     });
     benchmark::RegisterBenchmark("exp/nearest", [](auto& s) {
-        unary(s, [](const I& a) { return exp_nearest(a.lo); }, -20, 0);
+        unary(
+            s, [](const I& a) { return exp_nearest(a.lo); }, -20, 0);
     });
     benchmark::RegisterBenchmark("exp/c_library", [](auto& s) {
-        unary(s, [](const I& a) { return std::exp(a.lo); }, -20, 0);
+        unary(
+            s, [](const I& a) { return std::exp(a.lo); }, -20, 0);
     });
-    for (const KernelKind kernel :
-         {KernelKind::blinn, KernelKind::nishimura, KernelKind::wyvill}) {
+    for (const KernelKind kernel : {KernelKind::blinn, KernelKind::nishimura, KernelKind::wyvill}) {
         benchmark::RegisterBenchmark(
             ("kernel/" + std::string(kernel_word(kernel))).c_str(), [kernel](auto& s) {
-                unary(s, [&](const I& a) { return kernel_range(kernel, a); }, 0, 1.2);
+                unary(
+                    s, [&](const I& a) { return kernel_range(kernel, a); }, 0, 1.2);
             });
         for (const Shape shape : {Shape::point, Shape::segment, Shape::circle}) {
-            const std::string name =
-                std::string("/") + word(shape) + "/" + kernel_word(kernel);
+            const std::string name = std::string("/") + word(shape) + "/" + kernel_word(kernel);
             const auto add = [&](const std::string& what, auto evaluate) {
-                benchmark::RegisterBenchmark((what + name).c_str(),
-                                             [=](auto& s) {
-                                                 over_windows(s, shape, kernel, evaluate);
-                                             })
+                benchmark::RegisterBenchmark(
+                    (what + name).c_str(),
+                    [=](auto& s) { over_windows(s, shape, kernel, evaluate); })
                     ->Arg(1)
                     ->Arg(16);
             };

@@ -271,6 +271,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ivory::tools::run_tool("check_answers", run, argc, argv);
-}
+int main(int argc, char** argv) { return ivory::tools::run_tool("check_answers", run, argc, argv); }

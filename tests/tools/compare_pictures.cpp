@@ -82,10 +82,14 @@ int main(int count, char** words) {
     const char* difference_file = nullptr;
     bool exact = false, size = false;
     for (int i = 1; i < count; ++i) {
-        if (std::strcmp(words[i], "--exact") == 0) exact = true;
-        else if (std::strcmp(words[i], "--size") == 0) size = true;
-        else if (std::strcmp(words[i], "--difference") == 0 && i + 1 < count) difference_file = words[++i];
-        else files.push_back(words[i]);
+        if (std::strcmp(words[i], "--exact") == 0)
+            exact = true;
+        else if (std::strcmp(words[i], "--size") == 0)
+            size = true;
+        else if (std::strcmp(words[i], "--difference") == 0 && i + 1 < count)
+            difference_file = words[++i];
+        else
+            files.push_back(words[i]);
     }
     if (files.size() != (size ? 1u : 2u)) {
         std::fprintf(stderr, "compare_pictures: two pictures, or --size and one\n");
@@ -100,8 +104,8 @@ int main(int count, char** words) {
     const std::optional<Picture> actual = read_picture(files[1]);
     if (!actual) return 2;
     if (actual->width != expected->width || actual->height != expected->height) {
-        std::fprintf(stderr, "%s is %dx%d, expected %dx%d\n", files[1], actual->width, actual->height,
-                     expected->width, expected->height);
+        std::fprintf(stderr, "%s is %dx%d, expected %dx%d\n", files[1], actual->width,
+                     actual->height, expected->width, expected->height);
         return 1;
     }
     Picture shown;
@@ -111,8 +115,11 @@ int main(int count, char** words) {
                              : static_cast<double>(difference.pixels) <= 0.005 * all &&
                                    static_cast<double>(difference.visible_pixels) <= all / 500;
     if (equal) return 0;
-    std::fprintf(stderr, "%s: %zu of %.0f pixels differ from %s, %zu of them by more than 2/255, at most by %d/255\n",
-                 files[1], difference.pixels, all, files[0], difference.visible_pixels, difference.greatest);
+    std::fprintf(stderr,
+                 "%s: %zu of %.0f pixels differ from %s, %zu of them by more than 2/255, at most "
+                 "by %d/255\n",
+                 files[1], difference.pixels, all, files[0], difference.visible_pixels,
+                 difference.greatest);
     if (difference_file != nullptr && !write_picture(difference_file, shown))
         std::fprintf(stderr, "%s cannot be written\n", difference_file);
     return 1;

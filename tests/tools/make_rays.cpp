@@ -46,6 +46,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ivory::tools::run_tool("make_rays", run, argc, argv);
-}
+int main(int argc, char** argv) { return ivory::tools::run_tool("make_rays", run, argc, argv); }

@@ -33,6 +33,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ivory::tools::run_tool("make_scene", run, argc, argv);
-}
+int main(int argc, char** argv) { return ivory::tools::run_tool("make_scene", run, argc, argv); }

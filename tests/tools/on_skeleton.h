@@ -21,8 +21,8 @@ inline Vec3d nearest_place(const Skeleton& skeleton, const Vec3d& p) {
 
 // Any place of the skeleton, its ends often.
 inline Vec3d on_skeleton(const Skeleton& skeleton, Random& random) {
-    const Ball ball = std::visit(
-        []<class S>(const S& s) { return S::ball(s.columns()); }, skeleton);
+    const Ball ball =
+        std::visit([]<class S>(const S& s) { return S::ball(s.columns()); }, skeleton);
     return nearest_place(skeleton, ball.center + random.in_cube(2 * ball.radius));
 }
 

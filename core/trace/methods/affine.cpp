@@ -16,9 +16,9 @@ Interval<double> possible_zeros(const natural::Affine& f, const natural::Affine&
                                 const Interval<double>& all) {
     const bool finite = f.err < infinity<double> && std::abs(f.mid) < infinity<double>;
     if (!finite || !(std::abs(f.lin) > 0)) return all;
-    const Interval<double> e = quick::div(
-        quick::sub(Interval<double>(-f.err, f.err), Interval<double>(f.mid)),
-        f.lin > 0 ? Interval<double>(f.lin) : Interval<double>(-f.lin));
+    const Interval<double> e =
+        quick::div(quick::sub(Interval<double>(-f.err, f.err), Interval<double>(f.mid)),
+                   f.lin > 0 ? Interval<double>(f.lin) : Interval<double>(-f.lin));
     const Interval<double> oriented = f.lin > 0 ? e : -e;
     return intersection(
         all, quick::add(Interval<double>(t.mid), quick::mul(Interval<double>(t.lin), oriented)));

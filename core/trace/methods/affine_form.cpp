@@ -6,7 +6,9 @@ namespace {
 constexpr double u = affine_detail::u;
 
 // fl(a - b c) lies within this of it.
-double slack(double a, double product) { return 4 * u * (std::abs(a) + std::abs(product)) + 1e-300; }
+double slack(double a, double product) {
+    return 4 * u * (std::abs(a) + std::abs(product)) + 1e-300;
+}
 
 // Lower and upper bound of a - slope x.
 double offset_below(double a, double slope, double x) {
@@ -44,8 +46,7 @@ Affine kernel(KernelKind kind, const Affine& s) {
     const double below =
         std::min(offset_below(left - 4 * u * (k.lo + std::abs(dk.lo) * (touch - lo)), slope, lo),
                  offset_below(right - 4 * u * (k.lo + std::abs(dk.lo) * (hi - touch)), slope, hi));
-    const double above =
-        std::max(offset_above(at_lo, slope, lo), offset_above(at_hi, slope, hi));
+    const double above = std::max(offset_above(at_lo, slope, lo), offset_above(at_hi, slope, hi));
     return on_line(slope, {below, above}, s);
 }
 

@@ -59,9 +59,9 @@ inline Affine constant_like(const Span& c, const Affine&) {
 }
 
 inline Affine operator+(const Affine& a, const Affine& b) {
-    return affine_detail::rounded(a.mid + b.mid, a.lin + b.lin, a.err + b.err,
-                                  std::abs(a.mid) + std::abs(a.lin) + std::abs(b.mid) +
-                                      std::abs(b.lin));
+    return affine_detail::rounded(
+        a.mid + b.mid, a.lin + b.lin, a.err + b.err,
+        std::abs(a.mid) + std::abs(a.lin) + std::abs(b.mid) + std::abs(b.lin));
 }
 
 inline Affine less(const Affine& a, const Span& b) {
@@ -80,18 +80,17 @@ inline Affine times(const Span& s, const Affine& a) {
 // and r^2 from 0 to their greatest value.
 inline Affine sqr(const Affine& a) {
     const double bend = 0.5 * (a.lin * a.lin + a.err * a.err);
-    return affine_detail::rounded(
-        a.mid * a.mid + bend, 2 * a.mid * a.lin,
-        bend + 2 * (std::abs(a.mid) + std::abs(a.lin)) * a.err,
-        affine_detail::magnitude(a) * affine_detail::magnitude(a));
+    return affine_detail::rounded(a.mid * a.mid + bend, 2 * a.mid * a.lin,
+                                  bend + 2 * (std::abs(a.mid) + std::abs(a.lin)) * a.err,
+                                  affine_detail::magnitude(a) * affine_detail::magnitude(a));
 }
 
 // slope x + [offset.lo, offset.hi] for the x of the form.
 inline Affine on_line(double slope, const Span& offset, const Affine& a) {
     const double mid = midpoint(offset);
-    return affine_detail::rounded(
-        slope * a.mid + mid, slope * a.lin, std::abs(slope) * a.err + radius(offset),
-        std::abs(slope) * affine_detail::magnitude(a) + std::abs(mid));
+    return affine_detail::rounded(slope * a.mid + mid, slope * a.lin,
+                                  std::abs(slope) * a.err + radius(offset),
+                                  std::abs(slope) * affine_detail::magnitude(a) + std::abs(mid));
 }
 
 // k is convex: over [s] it lies below the chord's ends and above any tangent. Of the lines of the

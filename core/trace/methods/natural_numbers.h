@@ -92,9 +92,7 @@ inline Dual sqrt(const Dual& a) {
 }
 inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.slope, b.slope)}; }
 inline Span range(const Dual& a) { return a.x; }
-inline Dual times(const Span& s, const Dual& a) {
-    return {multiple(s, a.x), multiple(s, a.slope)};
-}
+inline Dual times(const Span& s, const Dual& a) { return {multiple(s, a.x), multiple(s, a.slope)}; }
 inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }
 inline Dual kernel(KernelKind kind, const Dual& s) {
     return with_kernel(kind, [&]<class K>() -> Dual {

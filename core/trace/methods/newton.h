@@ -14,7 +14,8 @@ class IntervalNewton final : public Method {
   public:
     [[nodiscard]] std::string_view name() const override { return "newton"; }
     [[nodiscard]] std::string_view proves() const override {
-        return "hit: a root in the interval and none before it; miss: no root at all; claimed where "
+        return "hit: a root in the interval and none before it; miss: no root at all; claimed "
+               "where "
                "the slope may be 0 down to the tolerance";
     }
     [[nodiscard]] Isolation isolate(const Field& field, const ElementList& list, const Ray& ray,

@@ -206,8 +206,8 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
         m[k] = midpoint(isolations[k].t);
         left = true;
     }
-    if (left) surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces,
-                              counts.stop);
+    if (left)
+        surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces, counts.stop);
 }
 
 void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,

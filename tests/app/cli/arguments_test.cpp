@@ -150,19 +150,23 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"trace", "a", "--method", "magic"}, "bisection"},
         Wrong{{"render", "a", "-o", "-", "--answers", "-"}, "standard output is named for two"},
         Wrong{{"trace", "-"}, "standard input cannot be the scene and the rays"},
-        Wrong{{"trace", "a", "-o", "b.png"}, "-o"}, Wrong{{"info", "a", "--methods"}, "takes no scene"},
-        Wrong{{"render", "a", "-o", "b.jpg"},
-              "-o: \"b.jpg\" has the suffix \".jpg\", which is not written; name a file that ends in "
-              ".png"},
+        Wrong{{"trace", "a", "-o", "b.png"}, "-o"},
+        Wrong{{"info", "a", "--methods"}, "takes no scene"},
+        Wrong{
+            {"render", "a", "-o", "b.jpg"},
+            "-o: \"b.jpg\" has the suffix \".jpg\", which is not written; name a file that ends in "
+            ".png"},
         Wrong{{"render", "a", "-o", "b"}, "has no suffix; name a file that ends in .png"},
         Wrong{{"render", "a", "-o", "b.png.bak"}, "ends in .png"},
         Wrong{{"render", "a", "--depth", "b.exr"}, "ends in .pfm"},
         Wrong{{"render", "a", "--answers", "b.json"}, "ends in .csv or .txt"},
         Wrong{{"render", "a", "--stats", "b.csv"}, "ends in .json or .txt"},
-        Wrong{{"a", "--headless", "--screenshot", "b.jpg"}, "--screenshot: \"b.jpg\" has the suffix"},
+        Wrong{{"a", "--headless", "--screenshot", "b.jpg"},
+              "--screenshot: \"b.jpg\" has the suffix"},
         Wrong{{"render", "a", "--answers", "b.txt", "--stats", "./b.txt"},
               "b.txt is named for two outputs, --answers and --stats"},
-        Wrong{{"-", "--headless", "--script", "-"}, "standard input cannot be the scene and the script"},
+        Wrong{{"-", "--headless", "--script", "-"},
+              "standard input cannot be the scene and the script"},
         Wrong{{"a", "b"}, "b"}, Wrong{{"--bogus"}, "--bogus"},
         Wrong{{"render", "a", "-o", "b\n", "-o", "c.png"}, "--output"}));
 

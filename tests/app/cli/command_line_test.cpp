@@ -252,8 +252,8 @@ TEST(CommandLine, WhatCannotBeWrittenLeavesNothing) {
     expect_failure(run_ivory({"render", figure_1, "-o", out, "--size", "8x8"}), 1,
                    "cannot be written");
     // The second of two outputs fails: the first is not there either.
-    expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats", out + "none/s.json",
-                              "--size", "8x8"}),
+    expect_failure(run_ivory({"render", figure_1, "-o", out + "a.png", "--stats",
+                              out + "none/s.json", "--size", "8x8"}),
                    1, "none/s");
     EXPECT_EQ(files_in(folder.path()), 0u);
     if (fs::exists("/dev/full")) {
@@ -355,9 +355,9 @@ TEST(CommandLine, NoTwoOutputsAreTheSameFile) {
     const std::string out = folder.path().string() + "/";
     const auto refused = [&](const std::string& picture, const std::string& depth) {
         const std::size_t before = files_in(folder.path());
-        expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "-o", picture, "--depth",
-                                  depth}),
-                       2, "is named for two outputs, -o and --depth");
+        expect_failure(
+            run_ivory({"render", figure_1, "--size", "8x8", "-o", picture, "--depth", depth}), 2,
+            "is named for two outputs, -o and --depth");
         EXPECT_EQ(files_in(folder.path()), before);
     };
     fs::create_symlink("a.png", folder / "there later.pfm");
@@ -371,9 +371,9 @@ TEST(CommandLine, NoTwoOutputsAreTheSameFile) {
     expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "--answers", out + "a.txt",
                               "--stats", out + "here/./a.txt"}),
                    2, "is named for two outputs, --answers and --stats");
-    expect_failure(run_ivory({"render", figure_1, "--size", "8x8", "-o", "-", "--depth",
-                              "/dev/stdout"}),
-                   2, "is named for two outputs");
+    expect_failure(
+        run_ivory({"render", figure_1, "--size", "8x8", "-o", "-", "--depth", "/dev/stdout"}), 2,
+        "is named for two outputs");
 }
 
 TEST(CommandLine, NoOutputIsAnInput) {

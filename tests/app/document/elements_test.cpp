@@ -106,8 +106,8 @@ TEST(Elements, AnyRowOfEditsLeavesAValidScene) {
             const std::size_t n = scene.elements.size();
             const std::size_t kind = n == 0 ? 0 : below(5);
             if (kind == 0)
-                scene = with_element(
-                    scene, new_element(static_cast<Shape>(below(3)), {0, 0, 0}, 1, n));
+                scene =
+                    with_element(scene, new_element(static_cast<Shape>(below(3)), {0, 0, 0}, 1, n));
             if (kind == 1) scene = without_element(scene, below(n));
             if (kind == 2) scene = with_copy(scene, below(n));
             if (kind == 3) scene = with_element_moved(scene, below(n), below(n));

@@ -188,7 +188,9 @@ TEST(Number, FarFromTheOriginEveryDigitIsShown) {
 
 TEST(Text, WhatHasNoRoomEndsInAnEllipsis) {
     ViewerBench bench;
-    const std::string text = "Gr\xC3\xB6\xC3\x9F" "e of the first ring";
+    const std::string text =
+        "Gr\xC3\xB6\xC3\x9F"
+        "e of the first ring";
     ImGui::NewFrame();
     const float whole = ImGui::CalcTextSize(text.c_str()).x;
     EXPECT_EQ(fitted_text(text, whole), text);
@@ -211,7 +213,8 @@ TEST(Text, WhatNoFontDrawsIsToldApart) {
     EXPECT_EQ(shown, "C\xCE\xB1 \\u{1F9EC} \\u{539F}");
     EXPECT_NE(shown, shown_text(bench.state, other));
     EXPECT_EQ(meant_text(shown), text);
-    for (const char* plain : {"", "\\u{", "\\u{}", "\\u{zz}", "\\u{D800}", "\\u{110000}", "\\u{41}"})
+    for (const char* plain :
+         {"", "\\u{", "\\u{}", "\\u{zz}", "\\u{D800}", "\\u{110000}", "\\u{41}"})
         EXPECT_EQ(meant_text(plain), plain);
 }
 

@@ -87,9 +87,10 @@ TEST(EventQueue, AfterASleepTheClockIsRightAndAnimationsDoNotLeap) {
 }
 
 TEST(EventQueue, AQuickShortcutKeepsItsModifierAndIsNotOvertakenByText) {
-    EventQueue queue = queue_of(
-        {KeyChanged{Key::control, true, false}, KeyChanged{Key::a, true, false},
-         KeyChanged{Key::control, false, false}, KeyChanged{Key::a, false, false}, TextTyped{U'1'}});
+    EventQueue queue =
+        queue_of({KeyChanged{Key::control, true, false}, KeyChanged{Key::a, true, false},
+                  KeyChanged{Key::control, false, false}, KeyChanged{Key::a, false, false},
+                  TextTyped{U'1'}});
     const Input first = queue.next_frame(a_frame);
     ASSERT_EQ(first.pressed.size(), 2u);
     EXPECT_EQ(first.pressed.back().key, Key::a);

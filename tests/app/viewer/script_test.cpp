@@ -155,17 +155,20 @@ TEST(Script, AStepWritesOverNothingThatIsReadOrWrittenOtherwise) {
     };
     EXPECT_NO_THROW(check(step("save", "s.json") + step("state", "a.json") +
                           step("state", "a.json") + step("screenshot", "a.png")));
-    EXPECT_NE(tests::error_line([&] { check("\n" + step("state", "link.json")); })
-                  .find("link.json\" is the scene itself"),
+    EXPECT_NE(tests::error_line([&] {
+                  check("\n" + step("state", "link.json"));
+              }).find("link.json\" is the scene itself"),
               std::string::npos);
-    EXPECT_NE(tests::error_line([&] { check(step("save", "script.json")); })
-                  .find("is the script itself"),
+    EXPECT_NE(
+        tests::error_line([&] { check(step("save", "script.json")); }).find("is the script itself"),
+        std::string::npos);
+    EXPECT_NE(tests::error_line([&] {
+                  check(step("screenshot", "./end.png"));
+              }).find("is the file of --screenshot"),
               std::string::npos);
-    EXPECT_NE(tests::error_line([&] { check(step("screenshot", "./end.png")); })
-                  .find("is the file of --screenshot"),
-              std::string::npos);
-    EXPECT_NE(tests::error_line([&] { check(step("save", "b.json") + step("state", "b.json")); })
-                  .find("s.txt, line 2: "),
+    EXPECT_NE(tests::error_line([&] {
+                  check(step("save", "b.json") + step("state", "b.json"));
+              }).find("s.txt, line 2: "),
               std::string::npos);
 }
 
@@ -175,7 +178,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"({"wait": "fnal"})", R"(wait has to be "final")"},
         Wrong{R"({"waits": "final"})", R"("waits" is no step; "wait" is)"},
         Wrong{R"({"xyzzy": 1})", "steps are wait, frames"}, Wrong{R"({})", "is no step"},
-        Wrong{R"([1])", "a step is an object"}, Wrong{R"({"wait": "final")", "column 17: the text ends inside"},
+        Wrong{R"([1])", "a step is an object"},
+        Wrong{R"({"wait": "final")", "column 17: the text ends inside"},
         Wrong{R"({"frames": -1})", "frames has to be a whole number"},
         Wrong{R"({"frames": 1.5})", "frames has to be a whole number"},
         Wrong{R"({"mouse": [1]})", "mouse has to be [x, y]"},

@@ -295,8 +295,8 @@ TEST_P(InMemory, ABrokenFileLeavesThePictureAndSaysWhy) {
     driven.viewer().hide_overlay(true);
     driven.play(R"({"frames": 1})");
     const auto before = colors_of(driven.viewer().read_back(), viewport);
-    const std::string line = tests::error_line(
-        [&] { driven.play(R"({"drop": "/nonexistent.ivory.json"})"); });
+    const std::string line =
+        tests::error_line([&] { driven.play(R"({"drop": "/nonexistent.ivory.json"})"); });
     EXPECT_NE(line.find("line 1: \"/nonexistent.ivory.json\" is not there"), std::string::npos);
     EXPECT_EQ(colors_of(driven.viewer().read_back(), viewport), before);
     EXPECT_NE(driven.state().message.text.find("/nonexistent.ivory.json"), std::string::npos);
@@ -310,9 +310,8 @@ TEST_P(InMemory, WhatIsExpectedWhereNothingIsFailsWithItsLine) {
     Driven driven(*context, {500, 400});
     for (const char* where : {"/elements/99999999999999999999", "/elements/-1", "/elements/a",
                               "/elements/00x", "/threshold/0", "nothing"}) {
-        const std::string line = tests::error_line([&] {
-            driven.play(R"({"expect": {")" + std::string(where) + R"(": 1}})");
-        });
+        const std::string line = tests::error_line(
+            [&] { driven.play(R"({"expect": {")" + std::string(where) + R"(": 1}})"); });
         EXPECT_NE(line.find("line 1: expected"), std::string::npos) << line;
         EXPECT_NE(line.find("neither the scene nor the state has it"), std::string::npos) << line;
     }

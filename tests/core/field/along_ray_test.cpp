@@ -80,8 +80,7 @@ std::vector<double> places(const View& view, Random& random) {
 // Calls check(view, random) for every element of scenes of one shape, one for each kernel, along
 // nasty rays, over spans of many lengths that come near the element.
 template <class Check>
-void for_views(Shape shape, std::uint64_t own_seed, tools::SceneRecipe recipe,
-               const Check& check) {
+void for_views(Shape shape, std::uint64_t own_seed, tools::SceneRecipe recipe, const Check& check) {
     int views = 0;
     std::uint64_t seed = tools::announced_seed(own_seed);
     for (const KernelKind kernel : tools::every_kernel) {
@@ -151,12 +150,13 @@ void check_at(const View& view, double t) {
 
 TEST_P(AlongRayOf, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
     for (const double scale : {1.0, 1e-6, 1e6}) {
-        for_views(GetParam(), 21, {.elements = 4, .scale = scale}, [](const View& view, Random& random) {
-            ASSERT_NE(view.along.form, ElementAlongRay::Form::unbounded);
-            for (const double t : places(view, random)) {
-                ASSERT_NO_FATAL_FAILURE(check_at(view, t));
-            }
-        });
+        for_views(GetParam(), 21, {.elements = 4, .scale = scale},
+                  [](const View& view, Random& random) {
+                      ASSERT_NE(view.along.form, ElementAlongRay::Form::unbounded);
+                      for (const double t : places(view, random)) {
+                          ASSERT_NO_FATAL_FAILURE(check_at(view, t));
+                      }
+                  });
     }
 }
 

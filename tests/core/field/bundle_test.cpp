@@ -1,6 +1,5 @@
 // The bounds of a window against the field itself.
 
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,10 +13,10 @@
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/reference/reference.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/random_scene.h"
-#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -59,16 +58,16 @@ void for_random_windows(const tools::ElementKind& kind, const Visit& visit) {
 }
 
 class BundleOf : public testing::TestWithParam<tools::ElementKind> {};
-INSTANTIATE_TEST_SUITE_P(Each, BundleOf, testing::ValuesIn(tools::every_kind),
-                         tools::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Each, BundleOf, testing::ValuesIn(tools::every_kind), tools::name_of_kind);
 
 // f <= (the sum over the window's entries) + above, and likewise below: what is left out is not
 // forgotten.
 TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
     int left_out = 0;
     double share = 0;  // of the bounds, used
-    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window,
-                           double scale, const Vec3d& d, Random& random) {
+    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle,
+                                       const Window& window, double scale, const Vec3d& d,
+                                       Random& random) {
         const Vec3d p = place(bundle.origin, random.uniform(window.begin, window.end), d);
         double above = 0, below = 0;
         for (std::uint32_t i = 0; i < field.size(); ++i) {
@@ -94,8 +93,9 @@ TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
 TEST_P(BundleOf, StagesAreAsGoodAsTheirBounds) {
     int windows = 0;
     double share = 0;
-    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window, double,
-                           const Vec3d& d, Random& random) {
+    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle,
+                                       const Window& window, double, const Vec3d& d,
+                                       Random& random) {
         ++windows;
         share =
             std::max(share, tools::expect_stages_hold(field, window, bundle.origin, d,
@@ -371,29 +371,30 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
 TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
     int windows = 0;
     double share = 0;
-    for_random_windows(GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window,
-                           double scale, const Vec3d& d, Random& random) {
-        const auto has_kinks = [](const auto& stage) {
-            const std::span entries(stage.entry.data(), stage.size);
-            return std::any_of(entries.begin(), entries.end(),
-                               [](const auto& entry) { return entry.slope == 0; });
-        };
-        if (has_kinks(window.fine) || has_kinks(window.faint)) return;
-        const double a = random.uniform(window.begin, window.end);
-        const double b = random.uniform(window.begin, window.end);
-        const double t0 = std::min(a, b), t1 = std::max(a, b);
-        const auto slope = [&](double t) {
-            return scale * dot(sample(field, place(bundle.origin, t, d)).gradient, d);
-        };
-        const double change = slope(t1) - slope(t0);
-        // What is left out has a slope of its own, below 1e-9 here.
-        ASSERT_LE(change, window.rise * (t1 - t0) + 1e-9);
-        ASSERT_GE(change, -window.fall * (t1 - t0) - 1e-9);
-        ++windows;
-        if (t1 - t0 < 1e-3) return;
-        share = std::max(
-            {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
-    });
+    for_random_windows(
+        GetParam(), [&](const Field& field, const Bundle& bundle, const Window& window,
+                        double scale, const Vec3d& d, Random& random) {
+            const auto has_kinks = [](const auto& stage) {
+                const std::span entries(stage.entry.data(), stage.size);
+                return std::any_of(entries.begin(), entries.end(),
+                                   [](const auto& entry) { return entry.slope == 0; });
+            };
+            if (has_kinks(window.fine) || has_kinks(window.faint)) return;
+            const double a = random.uniform(window.begin, window.end);
+            const double b = random.uniform(window.begin, window.end);
+            const double t0 = std::min(a, b), t1 = std::max(a, b);
+            const auto slope = [&](double t) {
+                return scale * dot(sample(field, place(bundle.origin, t, d)).gradient, d);
+            };
+            const double change = slope(t1) - slope(t0);
+            // What is left out has a slope of its own, below 1e-9 here.
+            ASSERT_LE(change, window.rise * (t1 - t0) + 1e-9);
+            ASSERT_GE(change, -window.fall * (t1 - t0) - 1e-9);
+            ++windows;
+            if (t1 - t0 < 1e-3) return;
+            share = std::max(
+                {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
+        });
     std::printf("%d windows, up to %.3f of a bound\n", windows, share);
     EXPECT_GT(windows, 400);
     EXPECT_GT(share, 0.5);

@@ -11,15 +11,14 @@
 #include <string>
 #include <vector>
 
-
 #include "core/field/bundle_steps.h"
 #include "core/field/surface.h"
 #include "core/math/direction.h"
 #include "tests/core/field/stage_check.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/on_skeleton.h"
 #include "tests/tools/random_scene.h"
-#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -55,7 +54,8 @@ TEST(Clusters, HoldTheirMembers) {
             (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
             ASSERT_LE(clusters.inverse_square[c], 1 / (field.width[i] * field.width[i]));
             for (int n = 0; n < 5; ++n) {
-                const Vec3d p = tools::on_skeleton(scene.elements[field.source[i]].skeleton, random);
+                const Vec3d p =
+                    tools::on_skeleton(scene.elements[field.source[i]].skeleton, random);
                 ASSERT_LE(length(p - center), clusters.radius[c] * (1 + 1e-12));
             }
         }

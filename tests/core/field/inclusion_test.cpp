@@ -115,8 +115,9 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed, Seen
         ++seen.short_windows;
         seen.narrow_value += width(e.value) <= wider * width(f) + rounding;
         seen.narrow_slope += width(e.slope) <= wider * width(df) + slope_rounding;
-        seen.bounded_curvature += width(e.curvature) <
-                                  100 * size / (field.least_width * field.least_width) * speed * speed;
+        seen.bounded_curvature +=
+            width(e.curvature) <
+            100 * size / (field.least_width * field.least_width) * speed * speed;
     }
 }
 

@@ -103,8 +103,8 @@ TEST(Refit, ClustersFollowWhatMoves) {
             Vec3d off = place_of(element) - center;
             ASSERT_LE(std::sqrt(dot(off, off)), clusters.radius[c]);
             ASSERT_EQ(field.width[i], element.width);
-            const Vec3d a = std::visit([](const auto& s) { return s.columns().a; },
-                                       element.skeleton);
+            const Vec3d a =
+                std::visit([](const auto& s) { return s.columns().a; }, element.skeleton);
             ASSERT_EQ(field.a(i), a);
             off = a - center;
             ASSERT_NEAR(double{clusters.members.x[i]}, off.x / field.unit,

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/field/window.h"
 #include "core/field/field.h"
 #include "core/field/surface.h"
+#include "core/field/window.h"
 #include "core/math/direction.h"
 
 namespace ivory::tools {

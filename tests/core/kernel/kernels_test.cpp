@@ -66,8 +66,7 @@ std::vector<double> places(Random& random) {
 }
 
 class Kernel : public testing::TestWithParam<KernelKind> {};
-INSTANTIATE_TEST_SUITE_P(Each, Kernel, testing::ValuesIn(tools::every_kernel),
-                         tools::name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Each, Kernel, testing::ValuesIn(tools::every_kernel), tools::name_of_kind);
 
 TEST_P(Kernel, ValueAndSlopeAtADoubleHoldTheExactOnesWithinAFewUnits) {
     Random random(tools::announced_seed(11));

@@ -223,7 +223,7 @@ TEST(Render, WorkDoesNotDependOnThreads) {
         settings.keep_lists = true;
         for (int n = 0; n < 6; ++n) {
             const JobReport by_others = render(picture, canvas, settings);
-        const SkippingCounts counts = by_others.counts.skipping;
+            const SkippingCounts counts = by_others.counts.skipping;
             const std::array work{counts.list_elements, counts.list_left_out, counts.stretches,
                                   counts.stretches_ended};
             std::array<std::uint64_t, 4>& first = expected[std::min(n, 1)];

@@ -102,7 +102,8 @@ TEST(ReadFile, LooksAtTheStopOnceInAMegabyte) {
 TEST(ReadFile, ASignalEndsTheWaitForBytesOnlyWhereItIsAStop) {
     const TemporaryFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-    struct sigaction before {}, action {};
+    struct sigaction before {
+    }, action{};
     action.sa_handler = [](int) {};  // and no SA_RESTART
     ASSERT_EQ(::sigaction(SIGUSR1, &action, &before), 0);
     const pthread_t reader = ::pthread_self();

@@ -400,9 +400,8 @@ TEST(ParseScene, LooksAtTheStopWhileElementsAreTaken) {
         job([&] { ++looks; });
         return looks;
     };
-    const std::size_t parsing = looks_of([&](const Stop& stop) {
-        static_cast<void>(parse_json(SourceText(text, "x"), stop));
-    });
+    const std::size_t parsing = looks_of(
+        [&](const Stop& stop) { static_cast<void>(parse_json(SourceText(text, "x"), stop)); });
     const std::size_t checking =
         looks_of([&](const Stop& stop) { static_cast<void>(find_fault(scene, stop)); });
     const std::size_t all =

@@ -86,8 +86,8 @@ TEST(Cancellation, EndsBundlesOfEachMethodOnEachInstructionSet) {
             counts.stop = Cancellation(flag);
             auto isolations = std::make_unique<BundleIsolations>();
             auto surfaces = std::make_unique<BundleSurfaces>();
-            method->trace_bundle(field, all_elements(field), *rays, {}, *isolations,
-                                 surfaces.get(), counts);
+            method->trace_bundle(field, all_elements(field), *rays, {}, *isolations, surfaces.get(),
+                                 counts);
             EXPECT_TRUE(counts.stop.requested());
             EXPECT_LE(counts.element_evaluations, Cancellation::often + 100 * many);
             EXPECT_EQ(isolations->status[255], Status::unresolved);

@@ -133,8 +133,8 @@ TEST_P(Methods, AgreesWithTheProvedAnswers) {
     EXPECT_GT(crossings, 200);
     EXPECT_LE(wrong, 0.005 * pixels);
     EXPECT_LE(far, 0.01 * crossings);
-    std::printf("%d pixels, %d wrong; %d crossings, %d farther off than they should\n", pixels, wrong,
-                crossings, far);
+    std::printf("%d pixels, %d wrong; %d crossings, %d farther off than they should\n", pixels,
+                wrong, crossings, far);
 }
 
 TEST_P(Methods, EmptyFieldsAndRaysPastTheBoxAreMisses) {
@@ -162,7 +162,8 @@ TEST_P(Methods, GrazingRaysEnd) {
     scene.elements = {
         {.skeleton = SegmentSkeleton{{-1000, 0, 0}, {1000, 0, 0}}, .strength = 0.5},
         {.skeleton = SegmentSkeleton{{-1000, 0, 0}, {1000, 0, 0}}, .strength = 0.5000000000000001}};
-    const Isolation end = answer(method(), compile(scene), {{-2000, 0, 0}, {1, 0, 0}}, 1e-9).isolation;
+    const Isolation end =
+        answer(method(), compile(scene), {{-2000, 0, 0}, {1, 0, 0}}, 1e-9).isolation;
     EXPECT_NE(end.status, Status::miss);
 }
 
@@ -234,8 +235,7 @@ TEST(NaturalExtensions, EncloseTheFieldAndItsSlope) {
                 const Interval<double> t{lo, lo + size};
                 const Interval<double> range = natural::extension(along, natural::Range{t}).x;
                 const natural::Dual dual = natural::extension(along, natural::Dual{t, 1.0});
-                const natural::Affine affine =
-                    natural::extension(along, natural::affine_over(t));
+                const natural::Affine affine = natural::extension(along, natural::affine_over(t));
                 const Interval<double> affine_range = natural::range(affine);
                 tight += width(affine_range) <= width(range);
                 ++samples;
@@ -258,7 +258,8 @@ TEST(NaturalExtensions, EncloseTheFieldAndItsSlope) {
                     EXPECT_LE(std::abs(f.value - (affine.mid + affine.lin * e)),
                               affine.err + room + 1e-6 * std::abs(affine.lin));
                     EXPECT_LE(std::abs(slope), steepest + slope_room);
-                    EXPECT_NEAR(natural::extension(along, natural::Plain{x}).x, f.value, 1e3 * room);
+                    EXPECT_NEAR(natural::extension(along, natural::Plain{x}).x, f.value,
+                                1e3 * room);
                 }
             }
         }

@@ -17,12 +17,12 @@
 #include "core/math/instruction_sets.h"
 #include "core/trace/methods/proved.h"
 #include "core/trace/packet_steps.h"
+#include "tests/core/trace/bundle_windows.h"
 #include "tests/reference/verdict.h"
 #include "tests/tools/instruction_sets.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
-#include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/seed.h"
 
 namespace ivory {
@@ -151,10 +151,11 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
     // hardly rises through T, they tell more signs; where it hides one, they compensate their sums.
     EXPECT_LE(wider, c.tolerance < 1e-11 || c.recipe.critical ? hits / 8 : hits / 500);
     EXPECT_GE(decided, c.least_decided * rays_traced);
-    std::printf("%d bundles, %d unusable, %d rays, %d decided by packets, %d hits, %d of them twice, "
-                "%d judged by the reference, %d differ; %s\n",
-                bundles, unusable, rays_traced, decided, hits, again_hits, judged, wider,
-                std::string(instruction_set()).c_str());
+    std::printf(
+        "%d bundles, %d unusable, %d rays, %d decided by packets, %d hits, %d of them twice, "
+        "%d judged by the reference, %d differ; %s\n",
+        bundles, unusable, rays_traced, decided, hits, again_hits, judged, wider,
+        std::string(instruction_set()).c_str());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -404,8 +405,7 @@ TEST(Packet, GuessesAreAsCloseAsTheCellsAsk) {
                                std::int32_t{Lanes::candidate}));
                 along.complete(window);
                 steps += packet_steps().enclose(window, T, unit, length, 0, 0, all.end,
-                                                Lanes::undecided, Lanes::undecided, *lanes,
-                                                stop);
+                                                Lanes::undecided, Lanes::undecided, *lanes, stop);
                 return true;
             });
         }
