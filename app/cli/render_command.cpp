@@ -33,7 +33,7 @@ double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Looked at before the work begins: what cannot be written is said at once.
+// SeenSurfaces at before the work begins: what cannot be written is said at once.
 struct Outputs {
     std::optional<Output> picture, depth, answers, statistics;
 

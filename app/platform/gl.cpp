@@ -8,10 +8,12 @@ namespace ivory {
 
 Gl Gl::load(const std::function<ProcAddress(const char*)>& proc_address) {
     Gl table;
-#define IVORY_GL_LOAD(result, name, parameters)                                             \
-    table.name = reinterpret_cast<decltype(table.name)>(proc_address("gl" #name));          \
-    if (table.name == nullptr) throw Error("OpenGL: the driver has no gl" #name "; 3.3 is " \
-                                                                                "needed");
+#define IVORY_GL_LOAD(result, name, parameters)                                    \
+    table.name = reinterpret_cast<decltype(table.name)>(proc_address("gl" #name)); \
+    if (table.name == nullptr)                                                     \
+        throw Error("OpenGL: the driver has no gl" #name                           \
+                    "; 3.3 is "                                                    \
+                    "needed");
     IVORY_GL_FUNCTIONS(IVORY_GL_LOAD)
 #undef IVORY_GL_LOAD
     GlInt major = 0, minor = 0;

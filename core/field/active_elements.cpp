@@ -36,7 +36,7 @@ void ActiveElements::make_room(std::size_t count) {
     for (auto* values : {&least, &most, &peak, &inverse}) values->assign(size, 0.0);
 }
 
-void ActiveElements::take(const NearElements& near, std::size_t i, double unit) {
+void ActiveElements::take(const LocalElements& near, std::size_t i, double unit) {
     const std::size_t count = size();
     element[count] = near.element[i];
     least[count] = double{near.least[i]};

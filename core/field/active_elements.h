@@ -8,7 +8,7 @@
 
 #include "core/field/clusters.h"
 #include "core/field/groups.h"
-#include "core/field/near_elements.h"
+#include "core/field/local_elements.h"
 
 namespace ivory {
 
@@ -31,7 +31,7 @@ struct ActiveElements {
     // The members of clusters.
     void take_members(const Clusters& clusters, const ActiveElements& of);
     // Element i of those, with its bounds, as the last one: there has to be room.
-    void take(const NearElements& near, std::size_t i, double unit);
+    void take(const LocalElements& near, std::size_t i, double unit);
     // Keeps nothing.
     void make_room(std::size_t count);
     // What is taken from now on is of that group.

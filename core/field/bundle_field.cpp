@@ -13,21 +13,21 @@ constexpr double margin = 0x1p-46;
 constexpr double more = 1 + 0x1p-46, less = 1 - 0x1p-46;
 
 // Windows are halved until f'' could bend f by less than this share of T over one of them.
-constexpr double bend_limit = 8;
+constexpr double curvature_limit = 8;
 
 constexpr double strong_cut_share = 0x1p-8, coarse_cut_share = 0x1p-20, fine_cut_share = 0x1p-24;
-constexpr double refined_cut_share = 0x1p-16;  // of the fine cut
+constexpr double full_cut_share = 0x1p-16;  // of the fine cut
 // Elements below this multiple of it are added up in float: in crowds what they lose there is a
 // fraction of what those below the fine cut leave open.
-constexpr double faint_cut_multiple = 0x1p13;
+constexpr double float_cut_multiple = 0x1p13;
 // Unless what float loses of them all is more than this share of that cut: places may be rough.
-constexpr double worst_faint_share = 0x1p-6;
+constexpr double worst_float_share = 0x1p-6;
 // The multiple for windows that leave out next to nothing.
-constexpr double finer_cut_multiple = 0x1p-3;
+constexpr double full_mixed_cut_multiple = 0x1p-3;
 
 // In least widths: as long as the shortest windows, and what elements can be there hardly differs
 // from what they are.
-constexpr double closer_reach = 0x1p-6;
+constexpr double about_root_reach = 0x1p-6;
 
 constexpr double u_float = 0x1p-22;  // of sums in float, as add_rest wants it
 
@@ -58,7 +58,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     unit_ = field.unit;
     least_width_ = field.least_width;
     fine_cut_ = threshold_ * std::min(fine_cut_share, tolerance * 0x1p-16);
-    refined_cut_ = fine_cut_ * refined_cut_share;
+    full_cut_ = fine_cut_ * full_cut_share;
     take_list(list, list_);
     return true;
 }
@@ -89,8 +89,8 @@ Interval<double> BundleField::span_of(const Bundle& bundle) const {
 }
 
 void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
-    bounded.rest = {std::max(list.rest.hi, 0.0) * scale_ * more,
-                    std::max(-list.rest.lo, 0.0) * scale_ * more};
+    bounded.left_out = {std::max(list.left_out.hi, 0.0) * scale_ * more,
+                        std::max(-list.left_out.lo, 0.0) * scale_ * more};
     bounded.in_clusters = !list.clusters.empty();
     if (bounded.in_clusters) {
         bounded.active.take(field_->clusters.first_of_group, list.clusters);
@@ -105,8 +105,8 @@ Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const
 
 // (2) of bundle.h: the part's axis at t is middle (part's axis - axis) + (t - middle) part's axis
 // away from M.
-NearStretch BundleField::near_stretch(const BundlePart& part, double middle, double t0,
-                                      double t1) const {
+LocalStretch BundleField::local_stretch(const BundlePart& part, double middle, double t0,
+                                        double t1) const {
     const Vec3d& axis = home_.axis;
     const double per_unit = 1 / unit_;
     return {part.axis,
@@ -128,7 +128,7 @@ PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent
     result.in_clusters = parent.in_clusters && in_clusters;
     const auto step = result.in_clusters ? bundle_steps().bound_clusters : bundle_steps().bound;
     const PeakSums peaks = step(*field_, on, scale_, cut, *candidates, result.active);
-    result.rest = parent.rest.with(peaks, candidates->size(), 0x1p-52);
+    result.left_out = parent.left_out.with(peaks, candidates->size(), 0x1p-52);
     return peaks;
 }
 
@@ -136,9 +136,9 @@ PeakSums BundleField::bound(const Stretch& on, double cut, const Bounded& parent
 PeakSums BundleField::bound_members(const BundlePart& part, double t0, double t1, double cut,
                                     const Bounded& parent, Bounded& result) {
     const PeakSums peaks = bundle_steps().bound_members(
-        *field_, stretch(home_, t0, t1), result.near_middle,
-        near_stretch(part, result.near_middle, t0, t1), cut, parent.active, &result.near);
-    result.rest = parent.rest.with(peaks, parent.active.size() * cluster_size, u_float);
+        *field_, stretch(home_, t0, t1), result.local_middle,
+        local_stretch(part, result.local_middle, t0, t1), cut, parent.active, &result.local);
+    result.left_out = parent.left_out.with(peaks, parent.active.size() * cluster_size, u_float);
     return peaks;
 }
 
@@ -146,68 +146,69 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
                         double t1, bool in_clusters) {
     PeakSums peaks;
     double u = 0x1p-52;  // of the sums
-    here.is_near = parent.is_near;
-    if (parent.is_near) {
+    here.is_local = parent.is_local;
+    if (parent.is_local) {
         u = u_float;
-        here.near_middle = parent.near_middle;
-        peaks = bundle_steps().bound_near(
-            parent.near, near_stretch(part, parent.near_middle, t0, t1), fine_cut_, here.near);
-        here.rest = parent.rest.with(peaks, parent.near.size(), u);
+        here.local_middle = parent.local_middle;
+        peaks = bundle_steps().bound_local(
+            parent.local, local_stretch(part, parent.local_middle, t0, t1), fine_cut_, here.local);
+        here.left_out = parent.left_out.with(peaks, parent.local.size(), u);
         // Places far from what they are relative to have lost digits.
         const double middle = 0.5 * (t0 + t1);
-        if (!in_clusters && std::abs(middle - here.near_middle) > long_stretch * unit_) {
-            here.near_middle = middle;
-            bundle_steps().place_near(*field_, stretch(home_, t0, t1), middle, here.near);
+        if (!in_clusters && std::abs(middle - here.local_middle) > long_stretch * unit_) {
+            here.local_middle = middle;
+            bundle_steps().place_local(*field_, stretch(home_, t0, t1), middle, here.local);
         }
     } else {
         const Stretch on = stretch(part, t0, t1);
-        here.is_near = field_->suits_float && !(parent.in_clusters && in_clusters) &&
-                       t1 - t0 < longest_in_float * unit_;
-        here.near_middle = 0.5 * (t0 + t1);
-        if (here.is_near && parent.in_clusters) {
+        here.is_local = field_->suits_float && !(parent.in_clusters && in_clusters) &&
+                        t1 - t0 < longest_in_float * unit_;
+        here.local_middle = 0.5 * (t0 + t1);
+        if (here.is_local && parent.in_clusters) {
             u = u_float;
             here.in_clusters = false;
             peaks = bound_members(part, t0, t1, fine_cut_, parent, here);
         } else {
             peaks = bound(on, fine_cut_, parent, in_clusters, here);
-            if (here.is_near) {
-                bundle_steps().enter_near(*field_, stretch(home_, t0, t1), here.near_middle,
-                                          here.active, here.near);
+            if (here.is_local) {
+                bundle_steps().enter_local(*field_, stretch(home_, t0, t1), here.local_middle,
+                                           here.active, here.local);
             }
         }
     }
     ++stretches_;
-    const std::size_t each = parent.in_clusters && !parent.is_near ? cluster_size : 1;
+    const std::size_t each = parent.in_clusters && !parent.is_local ? cluster_size : 1;
     if (stop_ != nullptr && stop_->after(parent.size() * each)) is_stopped_ = true;
-    if (skips_windows_ && certainly_below(threshold_, peaks, here.rest, here.size(), u)) {
+    if (skips_windows_ && certainly_below(threshold_, peaks, here.left_out, here.size(), u)) {
         ++stretches_ended_;
         return false;
     }
     return true;
 }
 
-void BundleField::bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const {
-    if (!bounded.is_near) return bend(stretch(part, t0, t1), bounded);
-    const BendSums bends =
-        bundle_steps().bend_near(bounded.near, near_stretch(part, bounded.near_middle, t0, t1));
-    const double sums = 1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22;
+void BundleField::bound_curvature(const BundlePart& part, double t0, double t1,
+                                  Bounded& bounded) const {
+    if (!bounded.is_local) return bound_curvature(stretch(part, t0, t1), bounded);
+    const CurvatureSums bends = bundle_steps().bound_curvature_local(
+        bounded.local, local_stretch(part, bounded.local_middle, t0, t1));
+    const double sums = 1 + static_cast<double>(bounded.local.size() + 64) * 0x1p-22;
     const double per_unit = 1 / unit_;
     bounded.rise = bends.rise * sums * (per_unit * per_unit);
     bounded.fall = bends.fall * sums * (per_unit * per_unit);
-    bounded.kinks = bends.kinks * sums * per_unit;
+    bounded.kinked_slope = bends.kinked_slope * sums * per_unit;
 }
 
-void BundleField::bend(const Stretch& on, Bounded& bounded) const {
-    const BendSums bends = bundle_steps().bend(*field_, on, scale_, bounded.active);
+void BundleField::bound_curvature(const Stretch& on, Bounded& bounded) const {
+    const CurvatureSums bends = bundle_steps().bound_curvature(*field_, on, scale_, bounded.active);
     bounded.rise = bends.rise * (1 + 0x1p-30);
     bounded.fall = bends.fall * (1 + 0x1p-30);
-    bounded.kinks = bends.kinks;
+    bounded.kinked_slope = bends.kinked_slope;
 }
 
-bool BundleField::bends_too_much(const Bounded& bounded, double length) const {
+bool BundleField::is_too_curved(const Bounded& bounded, double length) const {
     return length > least_length * least_width_ &&
-           (std::max(bounded.rise, bounded.fall) * length * length > bend_limit * threshold_ ||
-            bounded.kinks * length > kink_limit * threshold_);
+           (std::max(bounded.rise, bounded.fall) * length * length > curvature_limit * threshold_ ||
+            bounded.kinked_slope * length > kink_limit * threshold_);
 }
 
 namespace {
@@ -221,15 +222,15 @@ constexpr double compensated_roundings = 3;
 
 // With u the unit roundoff of the stage, u_sums that of the sums in `stage`.
 StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double roundings,
-                         std::size_t active, double threshold, const Rest& rest, double unit,
+                         std::size_t active, double threshold, const LeftOut& left_out, double unit,
                          double tiny) {
     const double n = static_cast<double>(active + 64);
     const double sums = 1 + n * 4 * u_sums;
     const double rounding =
         stage.error * sums + roundings * u * (stage.magnitude + threshold) * sums + tiny;
     StageBounds bounds;
-    bounds.above = (rest.above + stage.rest_above) * sums + rounding;
-    bounds.below = (rest.below + stage.rest_below) * sums + rounding;
+    bounds.above = (left_out.above + stage.left_out_above) * sums + rounding;
+    bounds.below = (left_out.below + stage.left_out_below) * sums + rounding;
     // The slope's own sum: each term is at most 2 b / w.
     bounds.slope = (stage.slope + n * u * stage.full_slope) * unit * sums + tiny;
     return bounds;
@@ -251,21 +252,22 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.is_complete = w.fine_usable = is_refined_ = is_finer_ = false;
+    w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = false;
 
     const CoarseCuts cuts{threshold_ * strong_cut_share, threshold_ * coarse_cut_share};
     StageSums sums;
     double slope_unit = unit_, u_sums = 0x1p-53;
-    if (here.is_near) {
-        sums = bundle_steps().coarse_near(here.near, near_stretch(part, here.near_middle, t0, t1),
-                                          (w.middle - here.near_middle) / unit_, cuts, w);
+    if (here.is_local) {
+        sums =
+            bundle_steps().coarse_local(here.local, local_stretch(part, here.local_middle, t0, t1),
+                                        (w.middle - here.local_middle) / unit_, cuts, w);
         slope_unit = 1;
         u_sums = 0x1p-24;
     } else {
         sums = bundle_steps().coarse(*field_, opened_on_, scale_, cuts, here.active, w);
     }
     w.coarse_bounds = stage_bounds(sums, 0x1p-24, u_sums, roundings(w.strong.size + w.weak.size),
-                                   here.size(), threshold_, here.rest, slope_unit, 1e-30);
+                                   here.size(), threshold_, here.left_out, slope_unit, 1e-30);
     const double added = 1 + static_cast<double>(here.size() + 64) * 4 * u_sums;
     w.strong_bounds = {w.coarse_bounds.above + sums.weak_above * added,
                        w.coarse_bounds.below + sums.weak_below * added,
@@ -285,97 +287,99 @@ Window& BundleField::open_unknown() {
 
 // From doubles or, where they are there, floats.
 void BundleField::complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
-                           double faint_cut, Window& w) {
+                           double float_cut, Window& w) {
     const ActiveElements* active = &bounded.active;
-    w.faint.clear();
-    StageBounds faint;
-    if (bounded.is_near) {
+    w.fine_in_float.clear();
+    StageBounds in_float;
+    if (bounded.is_local) {
         active = &members_;
-        const NearStretch near_on = near_stretch(part, bounded.near_middle, on.begin, on.end);
-        const double middle = (w.middle - bounded.near_middle) / unit_;
+        const LocalStretch near_on = local_stretch(part, bounded.local_middle, on.begin, on.end);
+        const double middle = (w.middle - bounded.local_middle) / unit_;
         const auto part_at = [&](double cut) {
-            const StageSums sums =
-                bundle_steps().faint(bounded.near, near_on, middle, unit_, cut, w, members_);
-            if (w.faint.size > 0) {
-                faint = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings(w.faint.size),
-                                     bounded.near.size(), 0, {}, 1, 1e-30);
+            const StageSums sums = bundle_steps().fine_in_float(bounded.local, near_on, middle,
+                                                                unit_, cut, w, members_);
+            if (w.fine_in_float.size > 0) {
+                in_float = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings(w.fine_in_float.size),
+                                        bounded.local.size(), 0, {}, 1, 1e-30);
                 // No slope of theirs is computed.
-                faint.slope = sums.full_slope *
-                              (1 + static_cast<double>(bounded.near.size() + 64) * 0x1p-22) / unit_;
+                in_float.slope = sums.full_slope *
+                                 (1 + static_cast<double>(bounded.local.size() + 64) * 0x1p-22) /
+                                 unit_;
             }
-            return sums.usable && std::max(faint.above, faint.below) <= cut * worst_faint_share;
+            return sums.usable &&
+                   std::max(in_float.above, in_float.below) <= cut * worst_float_share;
         };
-        if (!part_at(faint_cut)) {
-            faint = {};
+        if (!part_at(float_cut)) {
+            in_float = {};
             part_at(-1);  // all in double
         }
     }
     const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
     w.fine_bounds = stage_bounds(sums, 0x1p-53, 0x1p-53,
                                  w.compensated ? compensated_roundings : roundings(w.fine.size),
-                                 active->size(), threshold_, bounded.rest, 1, 1e-280);
-    w.fine_bounds.above += faint.above;
-    w.fine_bounds.below += faint.below;
-    w.fine_bounds.slope += faint.slope;
+                                 active->size(), threshold_, bounded.left_out, 1, 1e-280);
+    w.fine_bounds.above += in_float.above;
+    w.fine_bounds.below += in_float.below;
+    w.fine_bounds.slope += in_float.slope;
     w.fine_usable = sums.usable;
     w.is_complete = true;
 }
 
 void BundleField::complete(Window& w) {
     if (!w.is_complete)
-        complete(*opened_, opened_part_, opened_on_, fine_cut_ * faint_cut_multiple, w);
+        complete(*opened_, opened_part_, opened_on_, fine_cut_ * float_cut_multiple, w);
 }
 
-void BundleField::take_opened(const Bounded& bounded, double faint_cut, Window& w) {
+void BundleField::take_opened(const Bounded& bounded, double float_cut, Window& w) {
     w.begin = window_.begin;
     w.middle = window_.middle;
     w.end = window_.end;
     w.axis = window_.axis;
     w.rise = bounded.rise;
     w.fall = bounded.fall;
-    complete(bounded, opened_part_, opened_on_, faint_cut, w);
+    complete(bounded, opened_part_, opened_on_, float_cut, w);
 }
 
-const Window& BundleField::refined() {
-    if (is_refined_) return refined_;
-    is_refined_ = true;
+const Window& BundleField::full() {
+    if (has_full_) return full_;
+    has_full_ = true;
     const Bounded* from = &list_;
     if (list_.in_clusters) {
-        bound(opened_on_, refined_cut_, list_, true, near_clusters_);
-        from = &near_clusters_;
+        bound(opened_on_, full_cut_, list_, true, full_clusters_);
+        from = &full_clusters_;
     }
-    bound(opened_on_, refined_cut_, *from, false, refined_bounded_);
-    refined_bounded_.is_near = false;
-    bend(opened_on_, refined_bounded_);
-    take_opened(refined_bounded_, 0, refined_);
-    return refined_;
+    bound(opened_on_, full_cut_, *from, false, full_bounded_);
+    full_bounded_.is_local = false;
+    bound_curvature(opened_on_, full_bounded_);
+    take_opened(full_bounded_, 0, full_);
+    return full_;
 }
 
 // Of clusters the members are bounded in float.
-const Window& BundleField::finer() {
-    if (!(list_.in_clusters && opened_->is_near)) return refined();
-    if (is_finer_) return finer_;
-    is_finer_ = true;
-    Bounded& finer = refined_bounded_;
-    bound(opened_on_, refined_cut_, list_, true, near_clusters_);
-    finer.is_near = true;
+const Window& BundleField::full_mixed() {
+    if (!(list_.in_clusters && opened_->is_local)) return full();
+    if (has_full_mixed_) return full_mixed_;
+    has_full_mixed_ = true;
+    Bounded& finer = full_bounded_;
+    bound(opened_on_, full_cut_, list_, true, full_clusters_);
+    finer.is_local = true;
     finer.in_clusters = false;
-    finer.near_middle = window_.middle;
+    finer.local_middle = window_.middle;
     const double t0 = opened_on_.begin - pad_of(opened_on_.begin, opened_on_.end),
                  t1 = opened_on_.end + pad_of(opened_on_.begin, opened_on_.end);
-    bound_members(opened_part_, t0, t1, refined_cut_, near_clusters_, finer);
-    bend(opened_part_, t0, t1, finer);
-    take_opened(finer, fine_cut_ * finer_cut_multiple, finer_);
-    return finer_;
+    bound_members(opened_part_, t0, t1, full_cut_, full_clusters_, finer);
+    bound_curvature(opened_part_, t0, t1, finer);
+    take_opened(finer, fine_cut_ * full_mixed_cut_multiple, full_mixed_);
+    return full_mixed_;
 }
 
-const Window& BundleField::closer(const Vec3d& direction, double t) {
-    finer();
-    const Bounded& parent = refined_bounded_;
-    Bounded& here = closer_bounded_;
-    Window& w = closer_;
+const Window& BundleField::about_root(const Vec3d& direction, double t) {
+    full_mixed();
+    const Bounded& parent = full_bounded_;
+    Bounded& here = about_root_bounded_;
+    Window& w = about_root_;
     const BundlePart ray{.axis = direction};
-    const double reach = closer_reach * least_width_;
+    const double reach = about_root_reach * least_width_;
     w.begin = std::max(t - reach, window_.begin);
     w.end = std::min(t + reach, window_.end);
     w.middle = 0.5 * (w.begin + w.end);
@@ -384,19 +388,19 @@ const Window& BundleField::closer(const Vec3d& direction, double t) {
     // The places are relative to the window's middle.
     const double pad = pad_of(window_.begin, window_.end);
     const double t0 = w.begin - pad, t1 = w.end + pad;
-    here.is_near = parent.is_near;
-    if (parent.is_near) {
-        here.near_middle = parent.near_middle;
-        const PeakSums peaks = bundle_steps().bound_near(
-            parent.near, near_stretch(ray, parent.near_middle, t0, t1), refined_cut_, here.near);
-        here.rest = parent.rest.with(peaks, parent.near.size(), u_float);
+    here.is_local = parent.is_local;
+    if (parent.is_local) {
+        here.local_middle = parent.local_middle;
+        const PeakSums peaks = bundle_steps().bound_local(
+            parent.local, local_stretch(ray, parent.local_middle, t0, t1), full_cut_, here.local);
+        here.left_out = parent.left_out.with(peaks, parent.local.size(), u_float);
     } else {
-        bound(stretch(ray, t0, t1), refined_cut_, parent, false, here);
+        bound(stretch(ray, t0, t1), full_cut_, parent, false, here);
     }
-    bend(ray, t0, t1, here);
+    bound_curvature(ray, t0, t1, here);
     w.rise = here.rise;
     w.fall = here.fall;
-    complete(here, ray, stretch(ray, w.begin, w.end), fine_cut_ * finer_cut_multiple, w);
+    complete(here, ray, stretch(ray, w.begin, w.end), fine_cut_ * full_mixed_cut_multiple, w);
     return w;
 }
 

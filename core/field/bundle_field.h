@@ -33,8 +33,8 @@
 #include "core/field/bundle.h"
 #include "core/field/bundle_steps.h"
 #include "core/field/field.h"
-#include "core/field/near_elements.h"
-#include "core/field/rest.h"
+#include "core/field/left_out.h"
+#include "core/field/local_elements.h"
 #include "core/field/support.h"
 #include "core/field/window.h"
 #include "core/interval/interval.h"
@@ -46,15 +46,15 @@ namespace ivory {
 // The elements that matter on a stretch, and what the others can add.
 struct Bounded {
     bool in_clusters = false;  // `active` are clusters
-    bool is_near = false;      // the elements are in `near`, not in `active`
+    bool is_local = false;     // the elements are in `local`, not in `active`
     ActiveElements active;
-    NearElements near;
-    double near_middle = 0;  // the t on the bundle's axis that `near` is relative to
-    Rest rest;
+    LocalElements local;
+    double local_middle = 0;  // the t on the bundle's axis that `local` is relative to
+    LeftOut left_out;
     double rise = 0, fall = 0;  // bounds of f'' and of -f'', once they were asked for
-    double kinks = 0;           // upper bound of the |f'| of kinked elements; likewise
+    double kinked_slope = 0;    // upper bound of the |f'| of kinked elements; likewise
 
-    [[nodiscard]] std::size_t size() const { return is_near ? near.size() : active.size(); }
+    [[nodiscard]] std::size_t size() const { return is_local ? local.size() : active.size(); }
 };
 
 // The elements of a list as a bundle sees them. Reused from bundle to bundle: it keeps its memory.
@@ -82,9 +82,9 @@ class BundleField {
     bool bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0, double t1,
                bool in_clusters);
     // And its f''.
-    void bend(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
+    void bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     // Whether a window so long would need more steps than two of half the length.
-    [[nodiscard]] bool bends_too_much(const Bounded& bounded, double length) const;
+    [[nodiscard]] bool is_too_curved(const Bounded& bounded, double length) const;
 
     // The window of what was bounded so, which stays where it is.
     Window& open(const Bounded& bounded, const BundlePart& part, double t0, double t1);
@@ -95,13 +95,13 @@ class BundleField {
     void complete(Window& window);
 
     // The window that is open, with a fine stage that leaves out next to nothing and bounds of f''
-    // for it. No coarse stage; `refined` has no faint entries either.
-    const Window& refined();
-    const Window& finer();
+    // for it. No coarse stage; `full` has none in float either.
+    const Window& full();
+    const Window& full_mixed();
 
     // Likewise a piece of that window about t, for one of its rays alone: rounding is bounded there
     // by what the field is there. Good until the next one.
-    const Window& closer(const Vec3d& direction, double t);
+    const Window& about_root(const Vec3d& direction, double t);
 
     // Float cannot name the ends of a stretch: what is bounded is so much longer.
     static double pad_of(double t0, double t1) { return 0x1p-20 * (t1 - t0); }
@@ -124,35 +124,35 @@ class BundleField {
 
   private:
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
-    [[nodiscard]] NearStretch near_stretch(const BundlePart& part, double middle, double t0,
-                                           double t1) const;
+    [[nodiscard]] LocalStretch local_stretch(const BundlePart& part, double middle, double t0,
+                                             double t1) const;
     // Of the parent's those with |F| above `cut`; the others join what they could add.
     PeakSums bound(const Stretch& on, double cut, const Bounded& parent, bool in_clusters,
                    Bounded& result);
     PeakSums bound_members(const BundlePart& part, double t0, double t1, double cut,
                            const Bounded& parent, Bounded& result);
-    void bend(const Stretch& on, Bounded& bounded) const;
+    void bound_curvature(const Stretch& on, Bounded& bounded) const;
     void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
-                  double faint_cut, Window& window);
-    void take_opened(const Bounded& bounded, double faint_cut, Window& window);
+                  double float_cut, Window& window);
+    void take_opened(const Bounded& bounded, double float_cut, Window& window);
 
     const Field* field_ = nullptr;
     Vec3d origin_;
     BundlePart home_;
     Bounded list_;
     ActiveElements members_;  // of clusters, or of a window with a fine stage
-    Bounded near_clusters_;
+    Bounded full_clusters_;
 
     const Bounded* opened_ = nullptr;  // what the window is of
     Stretch opened_on_;
     BundlePart opened_part_;
     Window window_;
-    Bounded refined_bounded_, closer_bounded_;
-    Window refined_, finer_, closer_;
-    bool is_refined_ = false, is_finer_ = false;  // those are of the window
+    Bounded full_bounded_, about_root_bounded_;
+    Window full_, full_mixed_, about_root_;
+    bool has_full_ = false, has_full_mixed_ = false;  // those are of the window
 
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
-    double fine_cut_ = 0, refined_cut_ = 0;
+    double fine_cut_ = 0, full_cut_ = 0;
     Cancellation* stop_ = nullptr;
     bool is_stopped_ = false;
     bool skips_windows_ = true;

@@ -16,9 +16,10 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound,      bound_clusters, bend,       enter_near,
-                                   place_near, bound_members,  bound_near, bend_near,
-                                   coarse,     coarse_near,    fine,       faint};
+    static const BundleSteps steps{
+        bound,         bound_clusters, bound_curvature,       enter_local, place_local,
+        bound_members, bound_local,    bound_curvature_local, coarse,      coarse_local,
+        fine,          fine_in_float};
     return steps;
 }
 

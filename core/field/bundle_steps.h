@@ -11,7 +11,7 @@
 
 #include "core/field/active_elements.h"
 #include "core/field/field.h"
-#include "core/field/near_elements.h"
+#include "core/field/local_elements.h"
 #include "core/math/vec3.h"
 
 namespace ivory {
@@ -27,7 +27,7 @@ struct Stretch {
 
 // The same in units of some length, relative to the place at t = t_offset on the bundle's axis: the
 // points base + tau axis, and what is at most spread (tau + t_offset) away from them.
-struct NearStretch {
+struct LocalStretch {
     Vec3d axis, base;
     double spread = 0;
     double begin = 0, end = 0;  // tau
@@ -36,13 +36,13 @@ struct NearStretch {
 
 // Sums over elements, as computed.
 struct PeakSums {
-    double above = 0, magnitude = 0;        // of the kept ones: peaks above 0, all peaks
-    double rest_above = 0, rest_below = 0;  // what those left out can add and take away
+    double above = 0, magnitude = 0;                // of the kept ones: peaks above 0, all peaks
+    double left_out_above = 0, left_out_below = 0;  // what those left out can add and take away
 };
 
-struct BendSums {
+struct CurvatureSums {
     double rise = 0, fall = 0;  // of bounds of f'' and of -f''
-    double kinks = 0;           // and of |f'| of the elements whose f'' has none
+    double kinked_slope = 0;    // and of |f'| of the elements whose f'' has none
 };
 
 // Of |F|: what may be above the first enters a window among the strong entries, else what may be
@@ -55,7 +55,7 @@ struct CoarseCuts {
 struct StageSums {
     double error = 0, slope = 0;  // of what rounding does to |F| and |F'|, and left-out |F'|
     double magnitude = 0;         // of the peaks
-    double rest_above = 0, rest_below = 0;
+    double left_out_above = 0, left_out_below = 0;
     double full_slope = 0;  // of bounds of |F'| of all elements
     // Of the weak entries: what they can add and take away, and of bounds of their |F'|.
     double weak_above = 0, weak_below = 0, weak_slope = 0;
@@ -72,44 +72,45 @@ struct BundleSteps {
                                const ActiveElements& candidates, ActiveElements& kept);
 
     // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
-    BendSums (*bend)(const Field& field, const Stretch& stretch, double scale,
-                     ActiveElements& active);
+    CurvatureSums (*bound_curvature)(const Field& field, const Stretch& stretch, double scale,
+                                     ActiveElements& active);
 
     // Those elements with their bounds, in units (Field::unit), relative to the place at `middle`
     // on the axis of the `bundle`, not of one of its parts.
-    void (*enter_near)(const Field& field, const Stretch& bundle, double middle,
-                       const ActiveElements& active, NearElements& near);
+    void (*enter_local)(const Field& field, const Stretch& bundle, double middle,
+                        const ActiveElements& active, LocalElements& near);
 
     // Their places anew, without what they were off by, relative to the place at another `middle`.
-    void (*place_near)(const Field& field, const Stretch& bundle, double middle,
-                       NearElements& near);
+    void (*place_local)(const Field& field, const Stretch& bundle, double middle,
+                        LocalElements& near);
 
     // The members of clusters with |F| possibly above `cut`, likewise; `bundle` has the bundle's
     // origin and axis. Without `kept` only the sums.
     PeakSums (*bound_members)(const Field& field, const Stretch& bundle, double middle,
-                              const NearStretch& stretch, double cut,
-                              const ActiveElements& clusters, NearElements* kept);
+                              const LocalStretch& stretch, double cut,
+                              const ActiveElements& clusters, LocalElements* kept);
 
     // `bound` and `bend` of them, in float and in their units.
-    PeakSums (*bound_near)(const NearElements& candidates, const NearStretch& stretch, double cut,
-                           NearElements& kept);
-    BendSums (*bend_near)(NearElements& near, const NearStretch& stretch);
+    PeakSums (*bound_local)(const LocalElements& candidates, const LocalStretch& stretch,
+                            double cut, LocalElements& kept);
+    CurvatureSums (*bound_curvature_local)(LocalElements& near, const LocalStretch& stretch);
 
     // The window's coarse entries, in units.
     StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale,
                         const CoarseCuts& cuts, const ActiveElements& active, Window& window);
     // The same, in float, and so are the sums. `stretch` is that of the window, relative to the
     // same place as the elements.
-    StageSums (*coarse_near)(const NearElements& near, const NearStretch& stretch, double middle,
-                             const CoarseCuts& cuts, Window& window);
+    StageSums (*coarse_local)(const LocalElements& near, const LocalStretch& stretch, double middle,
+                              const CoarseCuts& cuts, Window& window);
 
     // The window's fine entries: all.
     StageSums (*fine)(const Field& field, const Stretch& stretch, double scale,
                       const ActiveElements& active, Window& window);
-    // Parts elements in float: those with |F| certainly at most `cut` become the window's faint
+    // Parts elements in float: those with |F| certainly at most `cut` become the window's
     // entries, in units, the others join `others`.
-    StageSums (*faint)(const NearElements& near, const NearStretch& stretch, double middle,
-                       double unit, double cut, Window& window, ActiveElements& others);
+    StageSums (*fine_in_float)(const LocalElements& near, const LocalStretch& stretch,
+                               double middle, double unit, double cut, Window& window,
+                               ActiveElements& others);
 };
 
 // For this machine.

@@ -31,7 +31,7 @@ Ball ball_of(const Field& field, std::size_t i) {
 }
 
 // The element relative to its cluster's centre.
-void put_member(const Field& field, std::size_t i, const Vec3d& center, NearElements& members) {
+void put_member(const Field& field, std::size_t i, const Vec3d& center, LocalElements& members) {
     const double per_unit = 1 / field.unit;
     const auto narrow = [](double x) { return static_cast<float>(x); };
     const Vec3d v = field.a(i) - center;
@@ -46,8 +46,8 @@ void put_member(const Field& field, std::size_t i, const Vec3d& center, NearElem
         members.mx[i] = narrow(field.mx[i] * m_factor);
         members.my[i] = narrow(field.my[i] * m_factor);
         members.mz[i] = narrow(field.mz[i] * m_factor);
-        members.extra[i] =
-            narrow(std::min(field.extra[i] * unit_factor<S::extra_power>(field.unit), 1e30));
+        members.parameter[i] = narrow(
+            std::min(field.parameter[i] * unit_factor<S::parameter_power>(field.unit), 1e30));
     });
     members.length[i] = narrow(field.length[i] * per_unit);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/field/groups.h"
-#include "core/field/near_elements.h"
+#include "core/field/local_elements.h"
 #include "core/math/vec3.h"
 
 namespace ivory {
@@ -37,7 +37,7 @@ struct Clusters {
     std::vector<double> inverse_square;   // 1 / w^2 of the widest
     // All elements of the field, each relative to the centre of its cluster; none where widths or
     // skeletons differ too much for float (core/field/bundle.h).
-    NearElements members;
+    LocalElements members;
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
     [[nodiscard]] bool empty() const { return x.empty(); }

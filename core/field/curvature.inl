@@ -15,7 +15,7 @@ namespace {
 
 template <class Tag>
 struct BendLanes {
-    V<Tag> rise, fall, kinks;
+    V<Tag> rise, fall, kinked_slope;
 };
 
 // Adds the bends of some elements; returns the circles' bound of 1 / rho.
@@ -38,10 +38,11 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
         const V<Tag> slope = hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
                                      hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),
                                              LanesOf<kind>::slope(d, least, peak)));
-        sums.kinks = hn::Add(sums.kinks, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
+        sums.kinked_slope =
+            hn::Add(sums.kinked_slope, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
     }
-    const Bend<Tag> bend = LanesOf<kind>::bend(
-        d, LanesOfShape<shape>::bend_range(e, s, error, least, most), peak, outward);
+    const Bend<Tag> bend = LanesOf<kind>::bound_curvature(
+        d, LanesOfShape<shape>::curvature_range(e, s, error, least, most), peak, outward);
     const M<Tag> adds = hn::Gt(e.strength, zero);
     const V<Tag> weight = hn::IfThenElseZero(
         smooth, hn::Mul(hn::Mul(hn::Abs(e.strength), e.inverse_square), hn::Set(d, Margin::more)));
@@ -51,15 +52,15 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
 }
 
 template <class Tag>
-HWY_INLINE void add_up(const BendLanes<Tag>& lanes, BendSums& sums) {
+HWY_INLINE void add_up(const BendLanes<Tag>& lanes, CurvatureSums& sums) {
     sums.rise += sum_of(lanes.rise);
     sums.fall += sum_of(lanes.fall);
-    sums.kinks += sum_of(lanes.kinks);
+    sums.kinked_slope += sum_of(lanes.kinked_slope);
 }
 
 template <Shape shape, KernelKind kind>
 void bend_group(const Field& field, const Stretch& stretch, double scale, ActiveElements& active,
-                std::size_t first, std::size_t end, BendSums& sums) {
+                std::size_t first, std::size_t end, CurvatureSums& sums) {
     const D d;
     const I di;
     const Reach<double> reach = reach_of(stretch);
@@ -76,8 +77,9 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
     add_up(lanes, sums);
 }
 
-BendSums bend(const Field& field, const Stretch& stretch, double scale, ActiveElements& active) {
-    BendSums sums;
+CurvatureSums bound_curvature(const Field& field, const Stretch& stretch, double scale,
+                              ActiveElements& active) {
+    CurvatureSums sums;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = active.first[group], end = active.first[group + 1];
         if (first == end) return;
@@ -87,12 +89,12 @@ BendSums bend(const Field& field, const Stretch& stretch, double scale, ActiveEl
 }
 
 template <Shape shape, KernelKind kind>
-void bend_near_group(NearElements& near, const Reach<float>& reach, std::size_t first,
-                     std::size_t end, BendSums& sums) {
+void bound_curvature_local_group(LocalElements& near, const Reach<float>& reach, std::size_t first,
+                                 std::size_t end, CurvatureSums& sums) {
     const F d;
     BendLanes<F> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        const auto e = seen_nearby<shape>(near, reach, i);
+        const auto e = seen_local<shape>(near, reach, i);
         const V<F> inverse =
             add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &near.least[i]),
                             hn::LoadU(d, &near.most[i]), hn::LoadU(d, &near.peak[i]), lanes);
@@ -101,13 +103,13 @@ void bend_near_group(NearElements& near, const Reach<float>& reach, std::size_t 
     add_up(lanes, sums);
 }
 
-BendSums bend_near(NearElements& near, const NearStretch& stretch) {
-    BendSums sums;
+CurvatureSums bound_curvature_local(LocalElements& near, const LocalStretch& stretch) {
+    CurvatureSums sums;
     const Reach<float> reach = reach_of(stretch, near);
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
         const std::size_t first = near.first[group], end = near.first[group + 1];
         if (first == end) return;
-        bend_near_group<shape, kind>(near, reach, first, end, sums);
+        bound_curvature_local_group<shape, kind>(near, reach, first, end, sums);
     });
     return sums;
 }

@@ -86,9 +86,9 @@ struct FieldArrivals {
 
 // From elements in float; `middle` is the window's, relative to the same place.
 template <Shape shape>
-struct NearArrivals {
+struct LocalArrivals {
     using Lanes = F;
-    const NearElements& near;
+    const LocalElements& near;
     Reach<float> reach;
     Vec3<float> middle;
 
@@ -96,7 +96,7 @@ struct NearArrivals {
         const F d;
         const auto place = [&](const std::vector<float>& c, float from)
                                HWY_ATTR { return hn::Sub(hn::LoadU(d, &c[i]), hn::Set(d, from)); };
-        const auto e = seen_nearby<shape>(near, reach, i);
+        const auto e = seen_local<shape>(near, reach, i);
         return {e,
                 {place(near.x, middle.x), place(near.y, middle.y), place(near.z, middle.z)},
                 hn::Sqrt(e.inverse_square),
@@ -140,7 +140,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
     const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
     const V<Tag> widened = hn::Set(d, Margins<hn::TFromD<Tag>>::more);
     V<Tag> error = zero, slope = zero, magnitude = zero, full_slope = zero;
-    V<Tag> rest_above = zero, rest_below = zero;
+    V<Tag> left_out_above = zero, left_out_below = zero;
     V<Tag> weak_above = zero, weak_below = zero, weak_slope = zero;
     M<Tag> bad = hn::FirstN(d, 0);
     alignas(64) Real quads[3][4 * lanes_at_most];  // of each lane, side by side
@@ -180,8 +180,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const M<Tag> leaves = hn::AndNot(enters, valid);
         const M<Tag> adds = hn::Gt(e.strength, zero);
         const V<Tag> left = hn::IfThenElseZero(leaves, value);
-        rest_above = hn::Add(rest_above, hn::IfThenElseZero(adds, left));
-        rest_below = hn::Add(rest_below, hn::IfThenZeroElse(adds, left));
+        left_out_above = hn::Add(left_out_above, hn::IfThenElseZero(adds, left));
+        left_out_below = hn::Add(left_out_below, hn::IfThenZeroElse(adds, left));
         full_slope = hn::Add(full_slope, hn::IfThenElseZero(valid, whole));
         const V<Tag> slope_off =
             hn::IfThenElse(hn::Or(kinked, leaves), whole, hn::Mul(per_length, off.slope));
@@ -198,10 +198,11 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
 
         const V<Tag> per_unit = c(1 / on.unit);
         const V<Tag> square = hn::Mul(e.inverse_square, c(on.unit * on.unit));
-        V<Tag> extra = e.extra;
+        V<Tag> parameter = e.parameter;
         V<Tag> m_scale = c(1);
         if constexpr (is_coarse && has_axis<shape>) {
-            extra = hn::Mul(extra, c(unit_factor<SkeletonOf<shape>::extra_power>(on.unit)));
+            parameter =
+                hn::Mul(parameter, c(unit_factor<SkeletonOf<shape>::parameter_power>(on.unit)));
             m_scale = c(unit_factor<SkeletonOf<shape>::m_power>(on.unit));
         }
         M<Tag> fit = hn::Lt(eta.value, c(5e-4));
@@ -209,7 +210,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             // 1 / |m|^2 of a very short segment and such are beyond float.
             const V<Tag> largest = hn::Max(square, strength);
             fit = hn::And(fit, hn::And(hn::Lt(eta.slope, c(1e-2)), hn::Lt(largest, c(1e12))));
-            if constexpr (has_axis<shape>) fit = hn::And(fit, hn::Lt(extra, c(1e12)));
+            if constexpr (has_axis<shape>) fit = hn::And(fit, hn::Lt(parameter, c(1e12)));
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
 
@@ -229,8 +230,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             0);
         put(e.strength, hn::IfThenZeroElse(kinked, full), zero, zero, 1);
         if constexpr (has_axis<shape>) {
-            put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale), extra,
-                2);
+            put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale),
+                parameter, 2);
         }
         const auto enter = [&](StageEntries<Real>& stage, M<Tag> which) HWY_ATTR {
             for (std::uint32_t bits = lane_bits(d, which); bits != 0; bits &= bits - 1) {
@@ -259,8 +260,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
     sums.slope += sum_of(slope);
     sums.magnitude += sum_of(magnitude);
     sums.full_slope += sum_of(full_slope);
-    sums.rest_above += sum_of(rest_above);
-    sums.rest_below += sum_of(rest_below);
+    sums.left_out_above += sum_of(left_out_above);
+    sums.left_out_below += sum_of(left_out_below);
     sums.weak_above += sum_of(weak_above);
     sums.weak_below += sum_of(weak_below);
     sums.weak_slope += sum_of(weak_slope);
@@ -296,9 +297,9 @@ StageSums coarse(const Field& field, const Stretch& stretch, double scale, const
 // c - M: beside what the elements' places are off by, and their own roundings, that of the middle's
 // place and of the difference; |place| <= |c - M| + |middle|. `middle` is that of the window,
 // relative to the elements' place.
-StageSums enter_from_near(const NearElements& near, const NearStretch& stretch, double middle,
-                          const CoarseCuts& cuts, const StrongOnes<float>& strong,
-                          StageEntries<float>& weak) {
+StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretch, double middle,
+                           const CoarseCuts& cuts, const StrongOnes<float>& strong,
+                           StageEntries<float>& weak) {
     StageSums sums;
     if (strong.entries != nullptr) strong.entries->clear();
     if (strong.others != nullptr) {
@@ -327,16 +328,16 @@ StageSums enter_from_near(const NearElements& near, const NearStretch& stretch, 
         const std::size_t first = near.first[group], end_of_group = near.first[group + 1];
         if (strong.others != nullptr) strong.others->begin(group);
         if (first == end_of_group) return;
-        const NearArrivals<shape> source{near, reach, from};
+        const LocalArrivals<shape> source{near, reach, from};
         enter_group<float, shape, kind>(source, on, cuts, first, end_of_group, strong, &weak, sums);
     });
     if (strong.others != nullptr) strong.others->end(strong.others->size());
     return sums;
 }
 
-StageSums coarse_near(const NearElements& near, const NearStretch& stretch, double middle,
-                      const CoarseCuts& cuts, Window& window) {
-    return enter_from_near(near, stretch, middle, cuts, {&window.strong}, window.weak);
+StageSums coarse_local(const LocalElements& near, const LocalStretch& stretch, double middle,
+                       const CoarseCuts& cuts, Window& window) {
+    return enter_from_local(near, stretch, middle, cuts, {&window.strong}, window.weak);
 }
 
 StageSums fine(const Field& field, const Stretch& stretch, double scale,
@@ -353,10 +354,10 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
     return sums;
 }
 
-StageSums faint(const NearElements& near, const NearStretch& stretch, double middle, double unit,
-                double cut, Window& window, ActiveElements& others) {
-    return enter_from_near(near, stretch, middle, {.strong = cut, .weak = 0},
-                           {.others = &others, .unit = unit}, window.faint);
+StageSums fine_in_float(const LocalElements& near, const LocalStretch& stretch, double middle,
+                        double unit, double cut, Window& window, ActiveElements& others) {
+    return enter_from_local(near, stretch, middle, {.strong = cut, .weak = 0},
+                            {.others = &others, .unit = unit}, window.fine_in_float);
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ bool is_compact(const Field& field) {
 void make_room(Field& field, std::size_t count) {
     for (auto* column :
          {&field.strength, &field.width, &field.ax, &field.ay, &field.az, &field.bx, &field.by,
-          &field.bz, &field.radius, &field.mx, &field.my, &field.mz, &field.extra, &field.length,
-          &field.inverse_width, &field.inverse_square, &field.cut}) {
+          &field.bz, &field.radius, &field.mx, &field.my, &field.mz, &field.parameter,
+          &field.length, &field.inverse_width, &field.inverse_square, &field.cut}) {
         column->resize(count);
     }
     for (auto* column : {&field.red, &field.green, &field.blue}) column->resize(count);
@@ -45,7 +45,7 @@ void make_room(Field& field, std::size_t count) {
 
 // All that an element says by itself, but for its colour.
 void put(Field& field, std::size_t i, const Element& element) {
-    const auto [a, b, m, radius, length, extra] =
+    const auto [a, b, m, radius, length, parameter] =
         std::visit([](const auto& skeleton) { return skeleton.columns(); }, element.skeleton);
     field.shape[i] = shape_of_skeleton(element.skeleton);
     field.kernel[i] = element.kernel;
@@ -61,7 +61,7 @@ void put(Field& field, std::size_t i, const Element& element) {
     field.mx[i] = m.x;
     field.my[i] = m.y;
     field.mz[i] = m.z;
-    field.extra[i] = extra;
+    field.parameter[i] = parameter;
     field.length[i] = length;
     field.inverse_width[i] = 1 / element.width;
     field.inverse_square[i] = 1 / (element.width * element.width);

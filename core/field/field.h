@@ -48,11 +48,11 @@ struct Field {
     std::vector<double> cut;
 
     // What core/field/bundle.h asks for again and again, computed to nearest.
-    std::vector<double> mx, my, mz, extra, length;  // SkeletonColumns::m, and so on
-    std::vector<double> inverse_width;              // 1 / w
-    std::vector<double> inverse_square;             // 1 / w^2
-    std::vector<float> red, green, blue;            // `color`, for what is only looked at
-    bool one_color = true;                          // all elements have the same
+    std::vector<double> mx, my, mz, parameter, length;  // SkeletonColumns::m, and so on
+    std::vector<double> inverse_width;                  // 1 / w
+    std::vector<double> inverse_square;                 // 1 / w^2
+    std::vector<float> red, green, blue;                // `color`, for what is only looked at
+    bool one_color = true;                              // all elements have the same
 
     Clusters clusters;
 
@@ -69,7 +69,7 @@ struct Field {
     [[nodiscard]] Vec3d a(std::size_t i) const { return {ax[i], ay[i], az[i]}; }
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
     [[nodiscard]] SkeletonColumns columns(std::size_t i) const {
-        return {a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], extra[i]};
+        return {a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], parameter[i]};
     }
 };
 

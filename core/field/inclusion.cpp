@@ -163,8 +163,8 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
     // then bound nothing, and what underflows beside T, which Sum's absolute term covers.
     threshold_ = std::frexp(field.threshold, &exponent_);
     Sum peaks, rest;
-    const Interval<double> left_out(std::ldexp(list.rest.lo, -exponent_),
-                                    std::ldexp(list.rest.hi, -exponent_));
+    const Interval<double> left_out(std::ldexp(list.left_out.lo, -exponent_),
+                                    std::ldexp(list.left_out.hi, -exponent_));
     rest.add(1, left_out);
     peaks.add(1, left_out);
     peaks.add(-1, Interval<double>(threshold_));

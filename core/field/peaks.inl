@@ -100,12 +100,14 @@ class Kept {
 // field and what takes away from it.
 template <class Tag>
 struct PeakLanes {
-    V<Tag> above, magnitude, rest_above, rest_below;
+    V<Tag> above, magnitude, left_out_above, left_out_below;
 
-    HWY_INLINE PeakLanes() { above = magnitude = rest_above = rest_below = hn::Zero(Tag()); }
+    HWY_INLINE PeakLanes() {
+        above = magnitude = left_out_above = left_out_below = hn::Zero(Tag());
+    }
     HWY_INLINE void add(M<Tag> keep, M<Tag> leave, V<Tag> adds, V<Tag> takes) {
-        rest_above = hn::Add(rest_above, hn::IfThenElseZero(leave, adds));
-        rest_below = hn::Add(rest_below, hn::IfThenElseZero(leave, takes));
+        left_out_above = hn::Add(left_out_above, hn::IfThenElseZero(leave, adds));
+        left_out_below = hn::Add(left_out_below, hn::IfThenElseZero(leave, takes));
         magnitude = hn::Add(magnitude, hn::IfThenElseZero(keep, hn::Add(adds, takes)));
         above = hn::Add(above, hn::IfThenElseZero(keep, adds));
     }
@@ -118,8 +120,8 @@ struct PeakLanes {
     HWY_INLINE void add_to(PeakSums& sums) const {
         sums.above += sum_of(above);
         sums.magnitude += sum_of(magnitude);
-        sums.rest_above += sum_of(rest_above);
-        sums.rest_below += sum_of(rest_below);
+        sums.left_out_above += sum_of(left_out_above);
+        sums.left_out_below += sum_of(left_out_below);
     }
 };
 
@@ -231,14 +233,14 @@ PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale
 
 // The valid ones from `first` on; their places, less `place`, are those of `candidates`.
 template <Shape shape, KernelKind kind>
-HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t first, M<F> valid,
-                                 const Reach<float>& reach, const Vec3<float>& place, float cut,
-                                 NearElements* kept, std::size_t& count, PeakLanes<F>& peaks) {
+HWY_INLINE void bound_local_lanes(const LocalElements& candidates, std::size_t first, M<F> valid,
+                                  const Reach<float>& reach, const Vec3<float>& place, float cut,
+                                  LocalElements* kept, std::size_t& count, PeakLanes<F>& peaks) {
     const F d;
     const hn::RebindToSigned<F> di;
     const V<F> widened = hn::Set(d, Margins<float>::more),
                reduced = hn::Set(d, Margins<float>::less);
-    const auto e = seen_nearby<shape>(candidates, reach, first);
+    const auto e = seen_local<shape>(candidates, reach, first);
     const DistanceRange<F> range =
         LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
     const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
@@ -263,7 +265,7 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
         put(e.m.x, kept->mx);
         put(e.m.y, kept->my);
         put(e.m.z, kept->mz);
-        put(e.extra, kept->extra);
+        put(e.parameter, kept->parameter);
         if constexpr (has_length<shape>) put(e.size, kept->length);
         put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept->most);
     }
@@ -274,21 +276,21 @@ HWY_INLINE void bound_near_lanes(const NearElements& candidates, std::size_t fir
 }
 
 template <Shape shape, KernelKind kind>
-void bound_near_group(const NearElements& candidates, const NearStretch& stretch, float cut,
-                      std::size_t first, std::size_t end, NearElements& kept, std::size_t& count,
-                      PeakSums& sums) {
+void bound_local_group(const LocalElements& candidates, const LocalStretch& stretch, float cut,
+                       std::size_t first, std::size_t end, LocalElements& kept, std::size_t& count,
+                       PeakSums& sums) {
     const F d;
     const Reach<float> reach = reach_of(stretch, candidates);
     PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        bound_near_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
-                                      count, peaks);
+        bound_local_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
+                                       count, peaks);
     }
     peaks.add_to(sums);
 }
 
-PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, double cut,
-                    NearElements& kept) {
+PeakSums bound_local(const LocalElements& candidates, const LocalStretch& stretch, double cut,
+                     LocalElements& kept) {
     kept.make_room(candidates.size());
     kept.magnitude = candidates.magnitude;
     PeakSums sums;
@@ -297,8 +299,8 @@ PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, 
         kept.first[group] = static_cast<std::uint32_t>(count);
         const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
         if (first == end) return;
-        bound_near_group<shape, kind>(candidates, stretch, static_cast<float>(cut), first, end,
-                                      kept, count, sums);
+        bound_local_group<shape, kind>(candidates, stretch, static_cast<float>(cut), first, end,
+                                       kept, count, sums);
     });
     kept.first[field_groups] = static_cast<std::uint32_t>(count);
     return sums;
@@ -309,8 +311,8 @@ PeakSums bound_near(const NearElements& candidates, const NearStretch& stretch, 
 // more they are off by less than 2^-23 of both together.
 template <Shape shape, KernelKind kind>
 void bound_member_group(const Field& field, const Stretch& bundle, double middle,
-                        const NearStretch& stretch, float cut, const ActiveElements& active,
-                        std::size_t first, std::size_t end, NearElements* kept, std::size_t& count,
+                        const LocalStretch& stretch, float cut, const ActiveElements& active,
+                        std::size_t first, std::size_t end, LocalElements* kept, std::size_t& count,
                         PeakSums& sums) {
     const F d;
     const Clusters& clusters = field.clusters;
@@ -332,8 +334,8 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
         const std::size_t before = count;
         const std::size_t last = clusters.first[cluster + 1];
         for (std::size_t e = clusters.first[cluster]; e < last; e += hn::Lanes(d)) {
-            bound_near_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e), from_center,
-                                          center, cut, kept, count, peaks);
+            bound_local_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e),
+                                           from_center, center, cut, kept, count, peaks);
         }
         if (count > before) {
             kept->magnitude = std::fmax(
@@ -345,8 +347,8 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
 }
 
 PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
-                       const NearStretch& stretch, double cut, const ActiveElements& clusters,
-                       NearElements* kept) {
+                       const LocalStretch& stretch, double cut, const ActiveElements& clusters,
+                       LocalElements* kept) {
     if (kept != nullptr) {
         kept->make_room(clusters.size() * cluster_size);
         kept->magnitude = 0;

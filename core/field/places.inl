@@ -41,7 +41,7 @@ HWY_INLINE V<D> offset_lanes(double o, V<D> c, double t, double direction) {
 #endif
 }
 
-void place_near(const Field& field, const Stretch& bundle, double middle, NearElements& near) {
+void place_local(const Field& field, const Stretch& bundle, double middle, LocalElements& near) {
     const D d;
     const I di;
     const hn::Rebind<float, D> narrow;
@@ -66,7 +66,7 @@ void place_near(const Field& field, const Stretch& bundle, double middle, NearEl
 // The elements of a list as floats, but for their places.
 template <Shape shape>
 void near_group(const Field& field, const ActiveElements& active, std::size_t first,
-                std::size_t end, NearElements& near) {
+                std::size_t end, LocalElements& near) {
     const D d;
     const I di;
     const hn::Rebind<float, D> narrow;
@@ -85,9 +85,10 @@ void near_group(const Field& field, const ActiveElements& active, std::size_t fi
             put(hn::Mul(column(field.mx), m_factor), near.mx);
             put(hn::Mul(column(field.my), m_factor), near.my);
             put(hn::Mul(column(field.mz), m_factor), near.mz);
-            put(hn::Min(hn::Mul(column(field.extra), constant(unit_factor<S::extra_power>(unit))),
+            put(hn::Min(hn::Mul(column(field.parameter),
+                                constant(unit_factor<S::parameter_power>(unit))),
                         constant(1e30)),
-                near.extra);
+                near.parameter);
             if constexpr (has_length<shape>) {
                 put(hn::Mul(column(field.length), constant(unit_factor<1>(unit))), near.length);
             }
@@ -102,8 +103,8 @@ void near_group(const Field& field, const ActiveElements& active, std::size_t fi
     }
 }
 
-void enter_near(const Field& field, const Stretch& bundle, double middle,
-                const ActiveElements& active, NearElements& near) {
+void enter_local(const Field& field, const Stretch& bundle, double middle,
+                 const ActiveElements& active, LocalElements& near) {
     near.make_room(active.size());
     near.first = active.first;
     for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
@@ -111,7 +112,7 @@ void enter_near(const Field& field, const Stretch& bundle, double middle,
         if (first == end) return;
         near_group<shape>(field, active, first, end, near);
     });
-    place_near(field, bundle, middle, near);
+    place_local(field, bundle, middle, near);
 }
 
 }  // namespace

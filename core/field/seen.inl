@@ -19,7 +19,7 @@ namespace {
 
 template <Shape shape>
 inline constexpr bool has_axis = SkeletonOf<shape>::has_axis;
-// Whether the skeleton is as long as m, and not of the size of `extra`.
+// Whether the skeleton is as long as m, and not of the size of `parameter`.
 template <Shape shape>
 inline constexpr bool has_length = SkeletonOf<shape>::m_power == 1;
 
@@ -27,7 +27,7 @@ HWY_INLINE Reach<double> reach_of(const Stretch& s) {
     return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
 }
 
-HWY_INLINE Reach<float> reach_of(const NearStretch& s) {
+HWY_INLINE Reach<float> reach_of(const LocalStretch& s) {
     const auto narrow = [](const Vec3d& v) {
         return Vec3<float>{static_cast<float>(v.x), static_cast<float>(v.y),
                            static_cast<float>(v.z)};
@@ -44,7 +44,7 @@ HWY_INLINE Reach<float> reach_of(const NearStretch& s) {
 }
 
 // Of elements whose places are off by more than their own rounding.
-HWY_INLINE Reach<float> reach_of(const NearStretch& s, const NearElements& near) {
+HWY_INLINE Reach<float> reach_of(const LocalStretch& s, const LocalElements& near) {
     Reach<float> reach = reach_of(s);
     reach.magnitude += 0x1p-5F * near.magnitude;  // margin of that: 2^-22
     return reach;
@@ -63,11 +63,11 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
            hn::Sub(column(field.az), constant(stretch.origin.z))};
     if constexpr (has_axis<shape>) {
         e.m = {column(field.mx), column(field.my), column(field.mz)};
-        e.extra = column(field.extra);
+        e.parameter = column(field.parameter);
         if constexpr (has_length<shape>)
             e.size = column(field.length);
         else
-            e.size = e.extra;
+            e.size = e.parameter;
     }
     e.strength = hn::Mul(column(field.strength), constant(scale));
     e.inverse_square = column(field.inverse_square);
@@ -76,8 +76,8 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
 }
 
 template <Shape shape>
-HWY_INLINE Seen<F, shape> seen_nearby(const NearElements& near, const Reach<float>& reach,
-                                      std::size_t i) {
+HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<float>& reach,
+                                     std::size_t i) {
     const F d;
     const auto column = [&](const std::vector<float>& values)
                             HWY_ATTR { return hn::LoadU(d, &values[i]); };
@@ -87,11 +87,11 @@ HWY_INLINE Seen<F, shape> seen_nearby(const NearElements& near, const Reach<floa
            hn::Sub(column(near.z), hn::Set(d, reach.base.z))};
     if constexpr (has_axis<shape>) {
         e.m = {column(near.mx), column(near.my), column(near.mz)};
-        e.extra = column(near.extra);
+        e.parameter = column(near.parameter);
         if constexpr (has_length<shape>)
             e.size = column(near.length);
         else
-            e.size = e.extra;
+            e.size = e.parameter;
     }
     e.strength = column(near.strength);
     e.inverse_square = column(near.inverse_square);

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/field/bundle_steps.h"
-#include "core/field/rest.h"
+#include "core/field/left_out.h"
 #include "core/math/direction.h"
 
 namespace ivory {
@@ -62,9 +62,10 @@ double share_of(const Field& field) {
 ElementList list_of(const Field& field, const ElementList& parent, std::size_t candidates,
                     const PeakSums& peaks) {
     ElementList list;
-    const Rest rest = Rest{parent.rest.hi, -parent.rest.lo}.with(peaks, candidates, 0x1p-52);
-    list.rest = {-rest.below, rest.above};
-    list.certainly_empty = certainly_below(field.threshold, peaks, rest, candidates, 0x1p-52);
+    const LeftOut left_out =
+        LeftOut{parent.left_out.hi, -parent.left_out.lo}.with(peaks, candidates, 0x1p-52);
+    list.left_out = {-left_out.below, left_out.above};
+    list.certainly_empty = certainly_below(field.threshold, peaks, left_out, candidates, 0x1p-52);
     return list;
 }
 
@@ -78,12 +79,12 @@ constexpr double most_tested_above = 1024;
 PeakSums peaks_of_members(const Field& field, const Cone& cone, const ActiveElements& clusters) {
     const Stretch rays = all_of(field, cone, {0.0, infinity<double>});
     const double middle = 0.5 * rays.end, per_unit = 1 / field.unit;
-    const NearStretch near{rays.axis,
-                           {},
-                           rays.spread,
-                           -middle * per_unit,
-                           (rays.end - middle) * (1 + 0x1p-50) * per_unit,
-                           middle * per_unit};
+    const LocalStretch near{rays.axis,
+                            {},
+                            rays.spread,
+                            -middle * per_unit,
+                            (rays.end - middle) * (1 + 0x1p-50) * per_unit,
+                            middle * per_unit};
     return bundle_steps().bound_members(field, rays, middle, near, 0, clusters, nullptr);
 }
 
@@ -141,8 +142,8 @@ ElementList reaching_clusters(const Field& field, const ElementList& parent, con
     if (kept.size() * cluster_size < most_tested &&
         peaks.above < most_tested_above * field.threshold) {
         const PeakSums closer = peaks_of_members(field, cone, kept);
-        const Rest rest{list.rest.hi * field.scale, -list.rest.lo * field.scale};
-        list.certainly_empty = certainly_below(field.threshold * field.scale, closer, rest,
+        const LeftOut left_out{list.left_out.hi * field.scale, -list.left_out.lo * field.scale};
+        list.certainly_empty = certainly_below(field.threshold * field.scale, closer, left_out,
                                                kept.size() * cluster_size + 60, 0x1p-22);
         if (list.certainly_empty) return list;
     }

@@ -13,12 +13,12 @@
 namespace ivory {
 
 // A sorted list of elements that stands for the whole field on some set of rays:
-// sum over the list + [rest.lo, rest.hi] encloses the sum of all F_i at every point of these rays,
+// sum over the list + [left_out.lo, left_out.hi] encloses the sum of all F_i at every point of these rays,
 // unless the list is certainly empty. A list of many elements may name clusters of them instead.
 struct ElementList {
     std::vector<std::uint32_t> elements;  // indices into Field, ascending
     std::vector<std::uint32_t> clusters;  // likewise, into Field::clusters; then no elements
-    Interval<double> rest{0.0, 0.0};
+    Interval<double> left_out{0.0, 0.0};
     bool certainly_empty = false;  // f < 0 on all these rays: every one is a miss, none needs more
 
     // No fewer elements than there are on the list, and how many indices.
@@ -45,7 +45,7 @@ struct Cone {
 [[nodiscard]] ElementList all_clusters(const Field& field);
 
 // The elements of `parent` that matter on the cone's rays, none of them as clusters; the others
-// move into `rest`. `parent` has to be valid on these rays. The result depends on the arguments
+// join `left_out`. `parent` has to be valid on these rays. The result depends on the arguments
 // alone; it has all elements of `parent` where the cone is too wide for bounds, or the field not
 // compact. Of rays with directions of length 1 within 2^-50 also on the part with t in `part`
 // alone; then `certainly_empty` is about that part.

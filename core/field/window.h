@@ -60,9 +60,9 @@ struct Window {
 
     // Once `complete` has been called for this window:
     bool is_complete = false;
-    StageEntries<double> fine;  // likewise, in scene units
-    StageEntries<float> faint;  // those of them that float is good enough for, as in `weak`
-    StageBounds fine_bounds;    // of both, the slope computed of the first; per scene unit
+    StageEntries<double> fine;          // likewise, in scene units
+    StageEntries<float> fine_in_float;  // those of them that float is good enough for, as in `weak`
+    StageBounds fine_bounds;            // of both, the slope computed of the first; per scene unit
     bool fine_usable = false;
     // `fine` has to be added up without losing what the sums are rounded by (Knuth's two-sum).
     bool compensated = false;

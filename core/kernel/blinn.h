@@ -176,8 +176,8 @@ struct KernelLanes<Blinn> {
 
     // 2 e^-s (2 x^2 - 1 + outward), with y = x^2 at most s.
     template <class Tag>
-    static HWY_INLINE Bend<Tag> bend(Tag d, const BendRange<Tag>& range, V<Tag> peak,
-                                     V<Tag> outward) {
+    static HWY_INLINE Bend<Tag> bound_curvature(Tag d, const CurvatureRange<Tag>& range,
+                                                V<Tag> peak, V<Tag> outward) {
         using Margin = Margins<hn::TFromD<Tag>>;
         const V<Tag> one = constant(d, 1), two = constant(d, 2);
         const V<Tag> widened = hn::Set(d, Margin::more);

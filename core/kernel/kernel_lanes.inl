@@ -108,7 +108,7 @@ struct KernelValue {
 // A lower bound of s on a stretch, and where y = x^2 = (away . d / w)^2 lies there; `is_exact` where
 // s = y + h_square, as it is for a point.
 template <class Tag>
-struct BendRange {
+struct CurvatureRange {
     V<Tag> least;
     V<Tag> y0, y1, h_square;
     bool is_exact;
@@ -136,12 +136,12 @@ struct EntryErrors {
 //     at(d, s)                    of s times argument_scale
 //     peak(d, s)                  an upper bound of k from a lower bound of s
 //     slope(d, least, peak)       of w / (2 |b|) |F'| = x |k'| <= sqrt(s) |k'| where s >= least
-//     bend(d, range, peak, outward)
+//     bound_curvature(d, range, peak, outward)
 //     errors(d, u, eta, least, greatest_root, peak)
 template <class K>
 struct KernelLanes;
 
-// Of a kernel that ends at s = 1 all but `at` and `greatest_bend` follow from its greatest slopes.
+// Of a kernel that ends at s = 1 all but `at` and `greatest_rise` follow from its greatest slopes.
 template <class K>
 struct EndingKernelLanes {
     static constexpr double argument_scale = 1;
@@ -175,12 +175,13 @@ struct EndingKernelLanes {
 
     // 4 x^2 k'' - 2 (1 - outward) |k'| with x^2 <= s.
     template <class Tag>
-    static HWY_INLINE Bend<Tag> bend(Tag d, const BendRange<Tag>& range, V<Tag>, V<Tag> outward) {
+    static HWY_INLINE Bend<Tag> bound_curvature(Tag d, const CurvatureRange<Tag>& range, V<Tag>,
+                                                V<Tag> outward) {
         const V<Tag> one = constant(d, 1), two = constant(d, 2);
         const V<Tag> widened = hn::Set(d, Margins<hn::TFromD<Tag>>::more);
         const V<Tag> least = range.least;
         const V<Tag> slope = steepest(d, least);
-        const V<Tag> greatest = KernelLanes<K>::greatest_bend(d, least);
+        const V<Tag> greatest = KernelLanes<K>::greatest_rise(d, least);
         const V<Tag> inward = hn::Mul(hn::Mul(two, at_least_0(hn::Sub(outward, one))), slope);
         const M<Tag> reaches = hn::Lt(least, one);
         return {hn::IfThenElseZero(reaches, hn::Mul(hn::Add(greatest, inward), widened)),

@@ -107,7 +107,7 @@ struct KernelLanes<Nishimura> : EndingKernelLanes<Nishimura> {
 
     // An upper bound of 4 s k'' from s = least on: 4 s 3/4 / q^3.
     template <class Tag>
-    static HWY_INLINE V<Tag> greatest_bend(Tag d, V<Tag> least) {
+    static HWY_INLINE V<Tag> greatest_rise(Tag d, V<Tag> least) {
         return hn::Div(constant(d, 3), hn::Sqrt(hn::Max(least, constant(d, 1.0 / 9))));
     }
 };

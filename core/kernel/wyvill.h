@@ -80,7 +80,7 @@ struct KernelLanes<Wyvill> : EndingKernelLanes<Wyvill> {
 
     // 4 s (34 - 24 s) / 9 falls from 17 / 24 on.
     template <class Tag>
-    static HWY_INLINE V<Tag> greatest_bend(Tag d, V<Tag> least) {
+    static HWY_INLINE V<Tag> greatest_rise(Tag d, V<Tag> least) {
         const V<Tag> s_worst = hn::Max(least, constant(d, 17.0 / 24));
         return hn::Mul(hn::Mul(constant(d, 4.0 / 9), s_worst),
                        hn::NegMulAdd(constant(d, 24), s_worst, constant(d, 34)));

@@ -4,7 +4,7 @@
 namespace ivory {
 
 // c: the skeleton's first place, relative to the window's. `away` is what leads from the skeleton's
-// nearest point to p; m and extra are what the shape's file says of them.
+// nearest point to p; m and parameter are what the shape's file says of them.
 template <class Real>
 struct BundleEntry {
     Real cx, cy, cz;
@@ -13,8 +13,8 @@ struct BundleEntry {
     // 2 b / w^2, with the kernel's slope_sign: F' = slope dk away . d; 0 where `kinked` counts it
     // instead
     Real slope;
-    Real unused[2];          // entries are written four numbers at a time
-    Real mx, my, mz, extra;  // not of points
+    Real unused[2];              // entries are written four numbers at a time
+    Real mx, my, mz, parameter;  // not of points
 };
 
 }  // namespace ivory

@@ -35,9 +35,9 @@ struct CircleSkeleton {
 
     // On the axis the direction to the nearest point jumps.
     static constexpr bool has_kinks = true;
-    // m = n; extra = r.
+    // m = n; parameter = r.
     static constexpr bool has_axis = true;
-    static constexpr int m_power = 0, extra_power = 1;
+    static constexpr int m_power = 0, parameter_power = 1;
 
     [[nodiscard]] Vec3d middle() const { return center; }
     [[nodiscard]] SkeletonColumns columns() const {
@@ -180,13 +180,13 @@ struct ShapeLanes<CircleSkeleton> {
         const Vec3v<Tag> v = from_first_place(d, e, p);
         const Vec3v<Tag> m{hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)};
         const V<Tag> along = dot<Tag>(v, m);
-        const V<Tag> extra = hn::Set(d, e.extra);
+        const V<Tag> parameter = hn::Set(d, e.parameter);
         const Vec3v<Tag> across = less_share(v, m, along);
         const Root<Tag> rho =
             root(d, hn::Max(dot<Tag>(across, across), hn::Set(d, least_square<Real>)));
-        const V<Tag> off = hn::Sub(rho.root, extra);
+        const V<Tag> off = hn::Sub(rho.root, parameter);
         square = hn::MulAdd(off, off, hn::Mul(along, along));
-        return less_share(v, across, hn::Mul(extra, rho.inverse));
+        return less_share(v, across, hn::Mul(parameter, rho.inverse));
     }
 
     // Whether `away` has a direction at p: near the axis it is lost.
@@ -205,7 +205,7 @@ struct ShapeLanes<CircleSkeleton> {
                                          const Vec3<hn::TFromD<Tag>>& axis, hn::TFromD<Tag> t) {
         const Vec3v<Tag> from = e.from_axis(axis, t);
         const V<Tag> along = dot<Tag>(from, e.m);
-        const V<Tag> off = hn::Sub(length_of(Tag(), less_share(from, e.m, along)), e.extra);
+        const V<Tag> off = hn::Sub(length_of(Tag(), less_share(from, e.m, along)), e.parameter);
         return hn::Sqrt(hn::MulAdd(off, off, square_of(along)));
     }
     template <class Tag>
@@ -230,9 +230,9 @@ struct ShapeLanes<CircleSkeleton> {
     }
 
     template <class Tag>
-    static HWY_INLINE BendRange<Tag> bend_range(const Seen<Tag, shape>&,
-                                                const Reach<hn::TFromD<Tag>>&, V<Tag>, V<Tag> least,
-                                                V<Tag> most) {
+    static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>&,
+                                                          const Reach<hn::TFromD<Tag>>&, V<Tag>,
+                                                          V<Tag> least, V<Tag> most) {
         return {least, least, most, hn::Zero(Tag()), false};
     }
 
@@ -252,9 +252,9 @@ struct ShapeLanes<CircleSkeleton> {
                           (s.end - s.begin) * Margin::more),
             hn::Set(d, aside));
         const V<Tag> unrounded = hn::Div(constant(d, 1), rho);
-        const M<Tag> bounded = hn::And(
-            hn::Gt(rho, zero), hn::Lt(hn::Mul(e.extra, unrounded), constant(d, greatest_outward)));
-        const M<Tag> is_point = hn::Eq(e.extra, zero);
+        const M<Tag> bounded = hn::And(hn::Gt(rho, zero), hn::Lt(hn::Mul(e.parameter, unrounded),
+                                                                 constant(d, greatest_outward)));
+        const M<Tag> is_point = hn::Eq(e.parameter, zero);
         const V<Tag> inverse =
             hn::IfThenElse(bounded, hn::Mul(unrounded, hn::Set(d, Margin::more)), constant(d, -1));
         return hn::IfThenZeroElse(is_point, inverse);
@@ -262,7 +262,7 @@ struct ShapeLanes<CircleSkeleton> {
     // How much of s'' that takes away, at most.
     template <class Tag>
     static HWY_INLINE V<Tag> outward(const Seen<Tag, shape>& e, V<Tag> inverse) {
-        return hn::Mul(hn::Mul(e.extra, at_least_0(inverse)),
+        return hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)),
                        hn::Set(Tag(), Margins<hn::TFromD<Tag>>::more));
     }
 
@@ -273,9 +273,10 @@ struct ShapeLanes<CircleSkeleton> {
                                               V<Tag> eta, V<Tag> v_length, V<Tag> inverse) {
         const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
         const double u = on.u;
-        eta = hn::MulAdd(c(3), eta, hn::MulAdd(c(24 * u), v_length, hn::Mul(c(10 * u), e.extra)));
+        eta =
+            hn::MulAdd(c(3), eta, hn::MulAdd(c(24 * u), v_length, hn::Mul(c(10 * u), e.parameter)));
         eta = hn::Add(eta, c(on.least_rho));
-        return {eta, hn::Mul(hn::Mul(e.extra, at_least_0(inverse)),
+        return {eta, hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)),
                              hn::MulAdd(c(4), eta, hn::Mul(c(24 * u), v_length)))};
     }
 };

@@ -24,9 +24,9 @@ struct PointSkeleton {
 
     // A convex skeleton without a medial axis: d^2 is smooth along each piece of a ray.
     static constexpr bool has_kinks = false;
-    // m and extra are not used.
+    // m and parameter are not used.
     static constexpr bool has_axis = false;
-    static constexpr int m_power = 0, extra_power = 0;
+    static constexpr int m_power = 0, parameter_power = 0;
 
     [[nodiscard]] Vec3d middle() const { return position; }
     [[nodiscard]] SkeletonColumns columns() const { return {position, {}, {}}; }
@@ -100,9 +100,9 @@ struct ShapeLanes<PointSkeleton> {
     // point at least h = across - (t |d - axis|) away, and its foot slips by no more than that turns
     // and moves it.
     template <class Tag>
-    static HWY_INLINE BendRange<Tag> bend_range(const Seen<Tag, shape>& e,
-                                                const Reach<hn::TFromD<Tag>>& s, V<Tag> error,
-                                                V<Tag> least, V<Tag>) {
+    static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>& e,
+                                                          const Reach<hn::TFromD<Tag>>& s,
+                                                          V<Tag> error, V<Tag> least, V<Tag>) {
         using Margin = Margins<hn::TFromD<Tag>>;
         const Tag d;
         const V<Tag> widened = hn::Set(d, Margin::more), reduced = hn::Set(d, Margin::less);

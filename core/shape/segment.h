@@ -28,16 +28,16 @@ struct SegmentSkeleton {
     }
 
     static constexpr bool has_kinks = false;
-    // m = b - a; extra = 1 / |m|^2, 0 where that is shorter than 1e-40 and stands for its end a.
+    // m = b - a; parameter = 1 / |m|^2, 0 where that is shorter than 1e-40 and stands for its end a.
     static constexpr bool has_axis = true;
-    static constexpr int m_power = 1, extra_power = -2;
+    static constexpr int m_power = 1, parameter_power = -2;
 
     [[nodiscard]] Vec3d middle() const { return 0.5 * a + 0.5 * b; }
     [[nodiscard]] SkeletonColumns columns() const {
         SkeletonColumns c{a, b, b - a};
         const double square = dot(c.m, c.m);
         c.length = std::sqrt(square);
-        c.extra = c.length > 1e-40 ? 1 / square : 0;
+        c.parameter = c.length > 1e-40 ? 1 / square : 0;
         return c;
     }
 
@@ -190,8 +190,8 @@ struct ShapeLanes<SegmentSkeleton> {
     static constexpr Shape shape = shape_of<SegmentSkeleton>;
 
     template <class Tag>
-    static HWY_INLINE V<Tag> clamped(V<Tag> along, V<Tag> extra) {
-        return hn::Min(at_least_0(hn::Mul(along, extra)), constant(Tag(), 1));
+    static HWY_INLINE V<Tag> clamped(V<Tag> along, V<Tag> parameter) {
+        return hn::Min(at_least_0(hn::Mul(along, parameter)), constant(Tag(), 1));
     }
 
     template <class Tag>
@@ -199,7 +199,7 @@ struct ShapeLanes<SegmentSkeleton> {
                                       const Vec3v<Tag>& p, V<Tag>& square) {
         const Vec3v<Tag> v = from_first_place(d, e, p);
         const Vec3v<Tag> m{hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)};
-        const V<Tag> foot = clamped<Tag>(dot<Tag>(v, m), hn::Set(d, e.extra));
+        const V<Tag> foot = clamped<Tag>(dot<Tag>(v, m), hn::Set(d, e.parameter));
         const Vec3v<Tag> away = less_share(v, m, foot);
         square = dot<Tag>(away, away);
         return away;
@@ -210,7 +210,8 @@ struct ShapeLanes<SegmentSkeleton> {
     static HWY_INLINE V<Tag> distance_at(const Seen<Tag, shape>& e,
                                          const Vec3<hn::TFromD<Tag>>& axis, hn::TFromD<Tag> t) {
         const Vec3v<Tag> from = e.from_axis(axis, t);
-        return length_of(Tag(), less_share(from, e.m, clamped<Tag>(dot<Tag>(from, e.m), e.extra)));
+        return length_of(Tag(),
+                         less_share(from, e.m, clamped<Tag>(dot<Tag>(from, e.m), e.parameter)));
     }
 
     // On a long stretch a ball around the skeleton, or its whole line, says more than (1). Between
@@ -242,9 +243,9 @@ struct ShapeLanes<SegmentSkeleton> {
 
     // x^2 <= s: mathematics of core/field/bundle.h.
     template <class Tag>
-    static HWY_INLINE BendRange<Tag> bend_range(const Seen<Tag, shape>&,
-                                                const Reach<hn::TFromD<Tag>>&, V<Tag>, V<Tag> least,
-                                                V<Tag> most) {
+    static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>&,
+                                                          const Reach<hn::TFromD<Tag>>&, V<Tag>,
+                                                          V<Tag> least, V<Tag> most) {
         return {least, least, most, hn::Zero(Tag()), false};
     }
 
@@ -256,7 +257,7 @@ struct ShapeLanes<SegmentSkeleton> {
         const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
         const double u = on.u;
         eta = hn::MulAdd(c(2), eta, hn::MulAdd(c(12 * u), v_length, hn::Mul(c(3 * u), e.size)));
-        return {hn::Add(eta, hn::IfThenElseZero(hn::Eq(e.extra, hn::Zero(d)), e.size)),
+        return {hn::Add(eta, hn::IfThenElseZero(hn::Eq(e.parameter, hn::Zero(d)), e.size)),
                 hn::Zero(d)};
     }
 };

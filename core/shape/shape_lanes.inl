@@ -80,18 +80,18 @@ struct Seen {
     using Real = hn::TFromD<Tag>;
     Vec3v<Tag> v;           // to the skeleton's first place
     Vec3v<Tag> m;           // as the shape's file says; 0 where it has no axis
-    V<Tag> extra;           // likewise
+    V<Tag> parameter;       // likewise
     V<Tag> size;            // of the skeleton: no point of it is farther from its first place
     V<Tag> magnitude;       // at least |v| + size
     V<Tag> strength;        // scaled
     V<Tag> inverse_square;  // 1 / w^2
 
-    // Once all but m, extra and size, unless it has an axis, and magnitude are set.
+    // Once all but m, parameter and size, unless it has an axis, and magnitude are set.
     HWY_INLINE void finish() {
         const Tag d;
         if constexpr (!SkeletonOf<shape>::has_axis) {
             m = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-            extra = size = hn::Zero(d);
+            parameter = size = hn::Zero(d);
         }
         magnitude =
             hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), size)),
@@ -194,7 +194,7 @@ struct Entering {
 // neither directed steps nor cases.
 //     away(d, entry, p, square)                   from the nearest point to p
 //     distances(seen, reach, error)               of a stretch's points from the skeleton
-//     bend_range(seen, reach, error, least, most) what kernels' bounds of f'' want to know
+//     curvature_range(seen, reach, error, least, most) what kernels' bounds of f'' want to know
 //     errors(d, entering, seen, eta, v_length, inverse)
 //         what `away` is off by, and what its direction adds, from what p - c is; `inverse`: of rho
 // and, where it has kinks,

@@ -45,7 +45,7 @@ concept SkeletonShape = std::equality_comparable<S> &&
     { S::has_kinks } -> std::convertible_to<bool>;
     { S::has_axis } -> std::convertible_to<bool>;
     { S::m_power } -> std::convertible_to<int>;
-    { S::extra_power } -> std::convertible_to<int>;
+    { S::parameter_power } -> std::convertible_to<int>;
     { s.middle() } -> std::same_as<Vec3d>;
     { s.columns() } -> std::same_as<SkeletonColumns>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;

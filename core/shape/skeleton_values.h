@@ -41,11 +41,11 @@ constexpr Member<Skeleton, double> length(std::string_view key, std::string_view
 
 // A skeleton as numbers side by side: one column of the field for each component.
 struct SkeletonColumns {
-    Vec3d a, b;         // as written
-    Vec3d m;            // computed to nearest, for the quick bounds
-    double radius = 0;  // as written
-    double length = 0;  // of m, where it has one that matters
-    double extra = 0;   // what else the quick bounds need
+    Vec3d a, b;            // as written
+    Vec3d m;               // computed to nearest, for the quick bounds
+    double radius = 0;     // as written
+    double length = 0;     // of m, where it has one that matters
+    double parameter = 0;  // what else the quick bounds need
 };
 
 // What a number of that power of lengths has to be multiplied by to be in units.

@@ -45,9 +45,9 @@ Window* Descent::take_own(const Piece& piece) {
     const bool may_meet = field_.bound(parent, here, part, t0 - pad, t1 + pad, halves);
     if (field_.is_stopped()) left_ = 0;
     if (!may_meet) return nullptr;
-    if (!halves) field_.bend(part, t0 - pad, t1 + pad, here);
+    if (!halves) field_.bound_curvature(part, t0 - pad, t1 + pad, here);
 
-    const bool divides = halves || (divisible && field_.bends_too_much(here, t1 - t0));
+    const bool divides = halves || (divisible && field_.is_too_curved(here, t1 - t0));
     const bool parts_there = has_parts(piece);
     // Where the rays are farther apart than the stretch is long, to halve it says less of each of
     // them than to part them.

@@ -107,7 +107,7 @@ HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
 }
 
 template <Shape shape, KernelKind kind>
-HWY_INLINE void add_faint_group(F d, const BundleEntry<float>* entry, std::uint32_t count,
+HWY_INLINE void add_float_group(F d, const BundleEntry<float>* entry, std::uint32_t count,
                                 const Vec3v<F>& p, V<F>& sum) {
     for (const auto* const end = entry + count; entry != end; ++entry) {
         V<F> square;
@@ -144,7 +144,7 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
     } else {
         add_fine<false>(window, p, direction, value);
     }
-    if (window.faint.size == 0) return;
+    if (window.fine_in_float.size == 0) return;
     V<D> x[n], y[n], z[n];
     for_each_of<n>([&](auto half) HWY_ATTR {
         x[half] = p[half].x;
@@ -152,13 +152,14 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
         z[half] = p[half].z;
     });
     const Vec3v<F> near{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
-    V<F> faint = hn::Zero(narrow);
-    for_groups(window.faint.count, [&]<Shape shape, KernelKind kind>(std::size_t first,
-                                                                     std::uint32_t count) HWY_ATTR {
-        add_faint_group<shape, kind>(narrow, window.faint.entry.data() + first, count, near, faint);
-    });
+    V<F> in_float = hn::Zero(narrow);
+    for_groups(window.fine_in_float.count,
+               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+                   add_float_group<shape, kind>(narrow, window.fine_in_float.entry.data() + first,
+                                                count, near, in_float);
+               });
     alignas(64) float sums[HWY_MAX_BYTES / sizeof(float)];
-    hn::Store(faint, narrow, sums);
+    hn::Store(in_float, narrow, sums);
     for_each_of<n>([&](auto half) HWY_ATTR {
         const auto sum = hn::Load(hn::Rebind<float, D>(), sums + half * hn::Lanes(d));
         value[half].f = hn::Add(value[half].f, hn::PromoteTo(d, sum));
@@ -351,7 +352,7 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
         const M<F> candidates = lanes_in(narrow, Lanes::candidate, lanes, k, end);
         const std::size_t count = hn::CountTrue(narrow, candidates);
         if (count == 0) continue;
-        if (stop.after(step * (window.fine.size + window.faint.size))) return steps;
+        if (stop.after(step * (window.fine.size + window.fine_in_float.size))) return steps;
         if (2 * count <= step) {
             std::uint64_t bits = bits_of(narrow, candidates);
             for (; bits != 0; bits &= bits - 1) {

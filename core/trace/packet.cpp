@@ -44,8 +44,9 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
                                      const Field& field, double limit, BundleSurfaces& surfaces,
                                      Cancellation& stop) {
     if (window.coarse_usable) {
-        const Looked looked = packet_steps().look(window, field, descent_.field().unit(), limit,
-                                                  lanes_, part.first, part.end, surfaces, stop);
+        const SeenSurfaces looked =
+            packet_steps().look(window, field, descent_.field().unit(), limit, lanes_, part.first,
+                                part.end, surfaces, stop);
         if (stop.requested()) return 0;
         if (looked.wanted == 0) return 0;
         surfaces.mix(window.strong.elements());
@@ -68,7 +69,7 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     }
     if (index_.empty()) return found;
     points_.resize(index_.size());
-    const Window& refined = descent_.field().refined();
+    const Window& refined = descent_.field().full();
     surfaces.mix(refined.fine.elements());
     packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data(), stop);
     if (stop.requested()) return 0;
@@ -170,7 +171,7 @@ void PacketTracer::enclose_lanes(const Window& in, double left_out, std::size_t 
         in, descent_.field().threshold(), descent_.field().unit(), job.settings.greatest_cell,
         left_out, first, end, pinned, otherwise, lanes_, job.counts.stop);
     job.counts.evaluations += evaluations;
-    job.counts.element_evaluations += evaluations * (in.fine.size + in.faint.size);
+    job.counts.element_evaluations += evaluations * (in.fine.size + in.fine_in_float.size);
 }
 
 void PacketTracer::enclose(const Window& window, const BundlePart& part, Job& job) {
@@ -186,7 +187,7 @@ void PacketTracer::enclose_more(const Window& window, const BundlePart& part, Jo
     const auto left_out = [](const Window& by) {
         return by.fine_bounds.above + by.fine_bounds.below;
     };
-    const Window& more = descent_.field().finer();
+    const Window& more = descent_.field().full_mixed();
     enclose_lanes(more, left_out(window), part.first, part.end, Lanes::hidden, Lanes::doubtful,
                   job);
     // What rises up to a ray's own piece is the sum of either.
@@ -204,8 +205,8 @@ void PacketTracer::about_roots(double left_out, const BundlePart& part, Job& job
         lanes_.state[k] = Lanes::candidate;
         lanes_.t[k] = t;
         const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
-        enclose_lanes(descent_.field().closer(direction, t), left_out, k, k + 1, Lanes::undecided,
-                      Lanes::undecided, job);
+        enclose_lanes(descent_.field().about_root(direction, t), left_out, k, k + 1,
+                      Lanes::undecided, Lanes::undecided, job);
         if (lanes_.state[k] != Lanes::undecided) continue;
         lanes_.t_lo[k] = bracket.lo;
         lanes_.t_hi[k] = bracket.hi;
@@ -217,7 +218,7 @@ void PacketTracer::walk_again(const BundlePart& part, Job& job) {
     counts.climbers[Rung::walk_again] += static_cast<std::uint64_t>(
         std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                    std::int32_t{Lanes::doubtful}));
-    const Window& whole = descent_.field().refined();
+    const Window& whole = descent_.field().full();
     const std::uint64_t steps = packet_steps().walk_again(
         whole, descent_.field().threshold(), part.first, part.end, lanes_, counts.stop);
     counts.evaluations += steps;

@@ -6,8 +6,8 @@
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
 #include "core/trace/enclose.inl"
-#include "core/trace/looks.inl"
 #include "core/trace/packet_lanes.inl"
+#include "core/trace/surfaces.inl"
 #include "core/trace/walk.inl"
 
 HWY_BEFORE_NAMESPACE();

@@ -44,7 +44,7 @@ struct Lanes {
 };
 
 // How many lanes were to be looked at, and of how many the surface is known now.
-struct Looked {
+struct SeenSurfaces {
     std::size_t wanted = 0, known = 0;
 };
 
@@ -69,7 +69,7 @@ struct PacketSteps {
                    std::size_t first, std::size_t end, Lanes& lanes, Cancellation& stop);
 
     // The same in double, from the window's begin, for the doubtful ones: they become candidates,
-    // walk on or are undecided. The window has no faint entries. Counts pairs of a lane and a step.
+    // walk on or are undecided. The window has no fine entries in float. Counts pairs of a lane and a step.
     std::uint64_t (*walk_again)(const Window& window, double threshold, std::size_t first,
                                 std::size_t end, Lanes& lanes, Cancellation& stop);
 
@@ -86,9 +86,9 @@ struct PacketSteps {
 
     // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,
     // in float: within 2^-8, or nx = NaN where float might lose more.
-    Looked (*look)(const Window& window, const Field& field, double unit, double limit,
-                   const Lanes& lanes, std::size_t first, std::size_t end, BundleSurfaces& surfaces,
-                   Cancellation& stop);
+    SeenSurfaces (*look)(const Window& window, const Field& field, double unit, double limit,
+                         const Lanes& lanes, std::size_t first, std::size_t end,
+                         BundleSurfaces& surfaces, Cancellation& stop);
 
     // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
     // or not defined, or no F_i is above 0, the normal's x is NaN.

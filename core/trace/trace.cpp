@@ -19,7 +19,7 @@ void trace_bundle(const Field& field, const ElementList& list, const ElementList
                   const RayBundle& rays, const Method& method, const MethodOptions& options,
                   BundleIsolations& isolations, BundleSurfaces* surfaces, Counts& counts) {
     method.trace_bundle(field, list, rays, options, isolations, surfaces, counts);
-    if (list.rest.lo == 0 && list.rest.hi == 0) return;  // all were there
+    if (list.left_out.lo == 0 && list.left_out.hi == 0) return;  // all were there
     std::array<double, RayBundle::capacity> again;
     bool any = false;
     for (std::size_t k = 0; k < rays.size(); ++k) {

@@ -245,7 +245,7 @@ Walked walk(const Window& window, double threshold, double unit, double cell, st
 std::uint64_t walk_again(const Window& window, double threshold, std::size_t first, std::size_t end,
                          Lanes& lanes, Cancellation& stop) {
     // `faint` entries are not walked along.
-    if (!window.fine_usable || window.faint.size > 0) {
+    if (!window.fine_usable || window.fine_in_float.size > 0) {
         for (std::size_t k = first; k < end; ++k) {
             if (lanes.state[k] != Lanes::doubtful) continue;
             lanes.state[k] = Lanes::undecided;

@@ -9,7 +9,7 @@ namespace ivory::natural {
 void RayField::build(const Field& field, const ElementList& list, const Ray& ray,
                      const ScaledRay& scaled_ray) {
     elements_.clear();
-    constant_ = list.rest - Span(field.threshold);
+    constant_ = list.left_out - Span(field.threshold);
     const Vector origin = vector(scaled_ray.origin);
     Vector direction = vector(scaled_ray.direction);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -41,9 +41,9 @@ Precision precision_of(const Search& search, const Field& field, const MethodOpt
 }
 
 // Those that reach the ray, or its `part`.
-ElementList near_elements(const Field& field, const ElementList& list, const Ray& ray,
-                          const Interval<double>& part, const MethodOptions& options,
-                          Counts& counts) {
+ElementList local_elements(const Field& field, const ElementList& list, const Ray& ray,
+                           const Interval<double>& part, const MethodOptions& options,
+                           Counts& counts) {
     if (!options.skipping.lists) return list;
     ElementList near = reaching_elements(field, list, {ray.origin, ray.direction, 0}, part);
     counts.stop.after(list.elements.size());
@@ -117,7 +117,7 @@ Isolation settled(const Interval<double>& bracket, const Field& field, const Ele
 
     const Interval<double> span{std::max(first - cell, 0.0), hi + cell};
     const ElementList near =
-        near_elements(field, list, ray, search.ray.unscaled(span), options, counts);
+        local_elements(field, list, ray, search.ray.unscaled(span), options, counts);
     thread_local FieldAlongRay along;
     along.build(field, near, search.ray.origin, search.ray.direction, span);
     double before = lo < first ? first - cell : first;  // f < 0 up to there
@@ -152,7 +152,7 @@ Isolation isolate_from(const Interval<double>& known, const Field& field, const 
         largest > 1e-100 && largest < 1e100) {
         ++counts.climbers[Rung::alone_near];
         const ElementList near =
-            near_elements(field, list, ray, {0.0, infinity<double>}, options, counts);
+            local_elements(field, list, ray, {0.0, infinity<double>}, options, counts);
         if (near.certainly_empty) return {Status::miss, Interval<double>::empty_set()};
         const Found found = search_from(known.lo, field, near, ray, options, counts);
         if (found.isolation.status == Status::miss) return found.isolation;

@@ -74,7 +74,7 @@ TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
             const auto is_in = [i](std::span<const std::uint32_t> kept) {
                 return std::find(kept.begin(), kept.end(), i) != kept.end();
             };
-            if (is_in(window.fine.elements()) || is_in(window.faint.elements())) continue;
+            if (is_in(window.fine.elements()) || is_in(window.fine_in_float.elements())) continue;
             const double value = element_value(field, i, p) * scale;
             (value > 0 ? above : below) += std::abs(value);
             left_out += value != 0;
@@ -128,7 +128,7 @@ TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
         const int no_end = std::numeric_limits<int>::max();
         along.for_windows(parts, {}, every, no_end, [&](const Window& window, const BundlePart&) {
             const Vec3d d = unit(bundle.axis + 0.0049 * unit(random.in_cube(1)));
-            const Window& piece = along.closer(d, random.uniform(window.begin, window.end));
+            const Window& piece = along.about_root(d, random.uniform(window.begin, window.end));
             EXPECT_GE(piece.begin, window.begin);
             EXPECT_LE(piece.end, window.end);
             if (!piece.fine_usable) return true;
@@ -147,7 +147,7 @@ TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
                                   (-off - slack) / piece.fine_bounds.below});
                 ++pieces;
             }
-            const Window& finer = along.finer();
+            const Window& finer = along.full_mixed();
             gains.push_back(finer.fine_bounds.above / piece.fine_bounds.above);
             return true;
         });
@@ -185,7 +185,7 @@ TEST(Bundle, FaintElementsAreOffByNoMoreThanTheirBounds) {
         const auto every = [](const BundlePart&, double, double) { return true; };
         along.for_windows(parts, {}, every, 1000, [&](Window& window, const BundlePart&) {
             along.complete(window);
-            faint += static_cast<int>(window.faint.size);
+            faint += static_cast<int>(window.fine_in_float.size);
             for (int n = 0; n < 20; ++n) {
                 const Vec3d d = unit(bundle.axis + 0.019 * unit(random.in_cube(1)));
                 const double t = random.uniform(window.begin, window.end);
@@ -379,7 +379,7 @@ TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
                 return std::any_of(entries.begin(), entries.end(),
                                    [](const auto& entry) { return entry.slope == 0; });
             };
-            if (has_kinks(window.fine) || has_kinks(window.faint)) return;
+            if (has_kinks(window.fine) || has_kinks(window.fine_in_float)) return;
             const double a = random.uniform(window.begin, window.end);
             const double b = random.uniform(window.begin, window.end);
             const double t0 = std::min(a, b), t1 = std::max(a, b);

@@ -126,8 +126,8 @@ void expect_stands_for_all(const Field& field, const ElementList& list, const Co
             (value > 0 ? above : below) += value;
             ++left_out;
         }
-        ASSERT_LE(above * (1 - 1e-9), list.rest.hi);
-        ASSERT_GE(below * (1 - 1e-9), list.rest.lo);
+        ASSERT_LE(above * (1 - 1e-9), list.left_out.hi);
+        ASSERT_GE(below * (1 - 1e-9), list.left_out.lo);
     }
 }
 
@@ -215,7 +215,7 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                     const Vec3d p = origin + random.uniform(window.begin, window.end) * d;
                     std::vector<bool> kept(field.size(), false);
                     for (const std::uint32_t i : window.fine.elements()) kept[i] = true;
-                    for (const std::uint32_t i : window.faint.elements()) {
+                    for (const std::uint32_t i : window.fine_in_float.elements()) {
                         EXPECT_FALSE(kept[i]);
                         kept[i] = true;
                     }
@@ -278,7 +278,7 @@ TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
     const BundleSteps& steps = bundle_steps();
     int checked = 0;
     double greatest = 0;  // share of the true s that the bound is
-    NearElements near, nearer;
+    LocalElements near, nearer;
     for (int n = 0; n < 2000; ++n) {
         const std::size_t aim = random.below(field.size());
         const Skeleton& skeleton = scene.elements[field.source[aim]].skeleton;
@@ -287,17 +287,17 @@ TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
         const Vec3d axis = unit(target + random.in_cube(0.7) - origin);
         const double t = dot(target - origin, axis), middle = t + random.uniform(-2, 2);
         const auto stretch = [&](double half) {
-            return NearStretch{axis,
-                               {},
-                               0,
-                               (t - half - middle) / field.unit,
-                               (t + half - middle) / field.unit,
-                               middle / field.unit};
+            return LocalStretch{axis,
+                                {},
+                                0,
+                                (t - half - middle) / field.unit,
+                                (t + half - middle) / field.unit,
+                                middle / field.unit};
         };
         steps.bound_members(field, {origin, axis, 0, t - 2, t + 2}, middle, stretch(2), 1e-12,
                             clusters, &near);
-        steps.bound_near(near, stretch(0.25), 1e-12, nearer);
-        for (const NearElements* found : {&near, &nearer}) {
+        steps.bound_local(near, stretch(0.25), 1e-12, nearer);
+        for (const LocalElements* found : {&near, &nearer}) {
             for (std::size_t k = 0; k < found->size(); ++k) {
                 if (static_cast<std::size_t>(found->element[k]) != aim) continue;
                 const Vec3d p = origin + t * axis, off = p - tools::nearest_place(skeleton, p);
@@ -347,20 +347,20 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
                                                            unit(random.in_cube(1)));
                     const double t = random.uniform(window.begin, window.end);
                     share = std::max(share, tools::expect_stages_hold(field, window, origin, d, t));
-                    faint += window.faint.size > 0;
+                    faint += window.fine_in_float.size > 0;
                     ++windows;
                     sparse += is_sparse;
                     if (random.below(8) != 0) return true;
-                    const Window &finer = along.finer(), &refined = along.refined();
+                    const Window &finer = along.full_mixed(), &refined = along.full();
                     tools::expect_stages_hold(field, finer, origin, d, t);
                     tools::expect_stages_hold(field, refined, origin, d, t);
-                    const Window& closer = along.closer(d, t);
+                    const Window& closer = along.about_root(d, t);
                     EXPECT_TRUE(closer.begin <= t && t <= closer.end);
                     tools::expect_stages_hold(field, closer, origin, d, t);
                     EXPECT_LE(closer.fine_bounds.above, finer.fine_bounds.above);
                     EXPECT_LT(finer.fine_bounds.above, 2 * refined.fine_bounds.above + 1e-14);
-                    finer_faint += finer.faint.size > 0;
-                    EXPECT_EQ(refined.faint.size, 0u);
+                    finer_faint += finer.fine_in_float.size > 0;
+                    EXPECT_EQ(refined.fine_in_float.size, 0u);
                     return true;
                 });
         }

@@ -34,10 +34,10 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
         const Vec3<Real> v = p - Vec3<Real>{e.cx, e.cy, e.cz}, m{e.mx, e.my, e.mz};
         Vec3<Real> away = v;
         if (field.shape[i] == Shape::segment) {
-            away = v - std::clamp(dot(v, m) * e.extra, Real{0}, Real{1}) * m;
+            away = v - std::clamp(dot(v, m) * e.parameter, Real{0}, Real{1}) * m;
         } else if (field.shape[i] == Shape::circle) {
             const Vec3<Real> across = v - dot(v, m) * m;
-            away = v - (e.extra / std::sqrt(dot(across, across))) * across;
+            away = v - (e.parameter / std::sqrt(dot(across, across))) * across;
         }
         const Real s = dot(away, away) * e.inverse_square;
         Real k = 0, dk = 0;
@@ -78,7 +78,7 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
     }
     const StageValue fine = stage_value(window.fine, field, p, d);
     const StageValue faint =
-        stage_value(window.faint, field, narrowed((1 / field.unit) * p), narrowed(d));
+        stage_value(window.fine_in_float, field, narrowed((1 / field.unit) * p), narrowed(d));
     const double kept_slope = fine.slope + faint.slope / field.unit;
     const auto middle = static_cast<float>(window.middle / field.unit);
     const Vec3<float> p_near = tau * narrowed(d) + middle * narrowed(d - window.axis);

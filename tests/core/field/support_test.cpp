@@ -66,8 +66,8 @@ void expect_stands_for_all(const Field& field, const std::vector<std::size_t>& v
         dropped = dropped + at.element[visible[field.source[i]]];
     }
     ASSERT_EQ(next, list.elements.size()) << "not ascending indices";
-    ASSERT_TRUE(Real(list.rest.lo) <= dropped.hi && dropped.lo <= Real(list.rest.hi))
-        << "rest [" << list.rest.lo << ", " << list.rest.hi << "], left out "
+    ASSERT_TRUE(Real(list.left_out.lo) <= dropped.hi && dropped.lo <= Real(list.left_out.hi))
+        << "rest [" << list.left_out.lo << ", " << list.left_out.hi << "], left out "
         << dropped.lo.to_double();
 }
 
@@ -149,8 +149,8 @@ TEST(Support, RestOfNestedListsStaysNegligible) {
             const ElementList parent = list;
             list = reaching_elements(field, parent, cone);
             cone = part_of(cone, random);
-            EXPECT_LE(width(list.rest), 0x1p-51 * field.threshold);
-            EXPECT_TRUE(is_subset(parent.rest, list.rest) || list.certainly_empty);
+            EXPECT_LE(width(list.left_out), 0x1p-51 * field.threshold);
+            EXPECT_TRUE(is_subset(parent.left_out, list.left_out) || list.certainly_empty);
             EXPECT_TRUE(std::includes(parent.elements.begin(), parent.elements.end(),
                                       list.elements.begin(), list.elements.end()));
         }
@@ -162,7 +162,7 @@ TEST(Support, AllElementsLeavesNothingOut) {
     const ElementList all = all_elements(field);
     ASSERT_EQ(all.elements.size(), field.size());
     for (std::size_t i = 0; i < field.size(); ++i) EXPECT_EQ(all.elements[i], i);
-    EXPECT_EQ(all.rest, Interval<double>(0.0));
+    EXPECT_EQ(all.left_out, Interval<double>(0.0));
     EXPECT_FALSE(all.certainly_empty);
     EXPECT_TRUE(all_elements(compile(Scene{})).certainly_empty);
 }
@@ -190,8 +190,8 @@ TEST(Support, NegativeElementThatReachesIsKept) {
     const ElementList list =
         reaching_elements(field, all_elements(field), {{0, 0, 0}, {0, 0, 1}, 0.01});
     EXPECT_EQ(list.elements, (std::vector<std::uint32_t>{0, 1}));
-    EXPECT_LE(list.rest.lo, 0);
-    EXPECT_GE(list.rest.hi, 0);
+    EXPECT_LE(list.left_out.lo, 0);
+    EXPECT_GE(list.left_out.hi, 0);
     EXPECT_FALSE(list.certainly_empty);
 }
 

@@ -25,10 +25,10 @@ class BundleWindows {
     }
 
     void complete(Window& window) { descent_.field().complete(window); }
-    const Window& refined() { return descent_.field().refined(); }
-    const Window& finer() { return descent_.field().finer(); }
-    const Window& closer(const Vec3d& direction, double t) {
-        return descent_.field().closer(direction, t);
+    const Window& full() { return descent_.field().full(); }
+    const Window& full_mixed() { return descent_.field().full_mixed(); }
+    const Window& about_root(const Vec3d& direction, double t) {
+        return descent_.field().about_root(direction, t);
     }
     [[nodiscard]] double unit() const { return descent_.field().unit(); }
     [[nodiscard]] double threshold() const { return descent_.field().threshold(); }

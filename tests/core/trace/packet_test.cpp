@@ -360,7 +360,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
                                    .mx = 0,
                                    .my = 0,
                                    .mz = 0,
-                                   .extra = 0});
+                                   .parameter = 0});
     window.strong.count[0] = 1;
     window.strong.size = 1;
     window.coarse_usable = true;

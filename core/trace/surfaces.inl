@@ -1,9 +1,9 @@
 // Normals and colours of a packet's hits: in float where that is good enough, else in double.
-#if defined(IVORY_CORE_TRACE_LOOKS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef IVORY_CORE_TRACE_LOOKS_INL
-#undef IVORY_CORE_TRACE_LOOKS_INL
+#if defined(IVORY_CORE_TRACE_SURFACES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef IVORY_CORE_TRACE_SURFACES_INL
+#undef IVORY_CORE_TRACE_SURFACES_INL
 #else
-#define IVORY_CORE_TRACE_LOOKS_INL
+#define IVORY_CORE_TRACE_SURFACES_INL
 #endif
 
 #include <algorithm>
@@ -103,14 +103,15 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
 }
 
 // Sums of what is only looked at.
-struct LookSum {
+struct FloatSurfaceSum {
     Vec3v<F> gradient, color;
     V<F> weight;
 };
 
 template <Shape shape, KernelKind kind>
-HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32_t* element,
-                         std::uint32_t count, const Field& field, const Vec3v<F>& p, LookSum& sum) {
+HWY_INLINE void add_float_surface(F d, const BundleEntry<float>* entry,
+                                  const std::uint32_t* element, std::uint32_t count,
+                                  const Field& field, const Vec3v<F>& p, FloatSurfaceSum& sum) {
     constexpr auto to_slope =
         static_cast<float>(2 * LanesOf<kind>::slope_sign / LanesOf<kind>::argument_scale);
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -135,9 +136,9 @@ HWY_INLINE void add_look(F d, const BundleEntry<float>* entry, const std::uint32
 
 // The bounds of f and f' hold for the sum of positive F_i and for the gradient too: for each entry
 // they bound the errors of F and of |grad F|.
-Looked look(const Window& window, const Field& field, double unit, double limit, const Lanes& lanes,
-            std::size_t first_lane, std::size_t end_lane, BundleSurfaces& surfaces,
-            Cancellation& stop) {
+SeenSurfaces look(const Window& window, const Field& field, double unit, double limit,
+                  const Lanes& lanes, std::size_t first_lane, std::size_t end_lane,
+                  BundleSurfaces& surfaces, Cancellation& stop) {
     const F d;
     const D wide;
     const std::size_t N = hn::Lanes(d);
@@ -148,7 +149,7 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
                end = hn::Set(wide, std::fmin(window.end, limit)),
                per_unit = hn::Set(wide, 1 / unit),
                nowhere = hn::Set(wide, std::numeric_limits<double>::quiet_NaN());
-    Looked looked;
+    SeenSurfaces looked;
     for (std::size_t first = first_lane; first < end_lane; first += N) {
         const M<F> hits = lanes_in(d, Lanes::hit, lanes, first, end_lane);
         if (hn::AllFalse(d, hits)) continue;
@@ -169,12 +170,12 @@ Looked look(const Window& window, const Field& field, double unit, double limit,
         const Vec3v<F> p{hn::MulAdd(t, rays.direction.x, rays.middle.x),
                          hn::MulAdd(t, rays.direction.y, rays.middle.y),
                          hn::MulAdd(t, rays.direction.z, rays.middle.z)};
-        LookSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
+        FloatSurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(stage->count, [&]<Shape shape, KernelKind kind>(
                                          std::size_t group, std::uint32_t count) HWY_ATTR {
-                add_look<shape, kind>(d, stage->entry.data() + group, stage->element.data() + group,
-                                      count, field, p, sum);
+                add_float_surface<shape, kind>(d, stage->entry.data() + group,
+                                               stage->element.data() + group, count, field, p, sum);
             });
         }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));

@@ -11,11 +11,11 @@ namespace ivory {
 
 // As structure of arrays sorted by group. Lengths in units (Field::unit), relative to a place
 // nearby; strengths times Field::scale.
-struct NearElements {
+struct LocalElements {
     GroupStarts first{};
     std::vector<std::int32_t> element;  // indices into Field
     // As Field and BundleEntry have them; the bounds as ActiveElements.
-    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, extra, length;
+    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, parameter, length;
     std::vector<float> least, most, peak, inverse;
     // No place is off by more than 2^-23 of this beside its own rounding.
     float magnitude = 0;
@@ -24,7 +24,7 @@ struct NearElements {
 
     [[nodiscard]] std::size_t size() const { return first.back(); }
     void make_room(std::size_t count);
-    friend bool operator==(const NearElements&, const NearElements&) = default;
+    friend bool operator==(const LocalElements&, const LocalElements&) = default;
 };
 
 }  // namespace ivory

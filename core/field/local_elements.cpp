@@ -1,12 +1,12 @@
-#include "core/field/near_elements.h"
+#include "core/field/local_elements.h"
 
 namespace ivory {
 
-void NearElements::make_room(std::size_t count) {
+void LocalElements::make_room(std::size_t count) {
     if (element.size() >= count + room) return;
     const std::size_t size = count + count / 2 + room;
     element.assign(size, 0);
-    for (auto* values : {&x, &y, &z, &strength, &inverse_square, &mx, &my, &mz, &extra, &length,
+    for (auto* values : {&x, &y, &z, &strength, &inverse_square, &mx, &my, &mz, &parameter, &length,
                          &least, &most, &peak, &inverse}) {
         values->assign(size, 0.0F);
     }
