@@ -1,10 +1,13 @@
 // The traced picture as a texture, drawn pixel for pixel into the viewport.
 #pragma once
 
+#include <vector>
+
 #include "app/platform/gl.h"
 #include "app/platform/window_rect.h"
-#include "app/viewer/render_session.h"
+#include "app/viewer/shown_picture.h"
 #include "core/render/frame.h"
+#include "core/render/tiles.h"
 
 namespace ivory {
 

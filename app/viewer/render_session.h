@@ -6,51 +6,15 @@
 // one as blocks, coarse enough to come in time; then it is refined in place.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <vector>
 
 #include "app/panels/picture_state.h"
-#include "app/platform/window_rect.h"
-#include "core/render/frame.h"
-#include "core/render/tiles.h"
-#include "core/scene/scene.h"
+#include "app/viewer/patience.h"
+#include "app/viewer/shown_picture.h"
 
 namespace ivory {
-
-// Which first pictures `poll` takes over. Coarse blocks that are about to be refined only flicker,
-// unless that takes long enough to be waited for.
-enum class FirstPicture : std::uint8_t {
-    any,      // whatever is there of the whole picture
-    fine,     // fine blocks at once: the next edit is about to replace them
-    settled,  // and these after a moment, since the final picture may be there before anyone sees it
-};
-
-struct PictureRequest {
-    std::shared_ptr<const Scene> scene;  // its own camera is not looked at
-    Camera camera;
-    WindowSize size;                   // at least 1 x 1
-    std::optional<WindowPoint> focus;  // in the picture: what is refined first; none: the middle
-    std::chrono::steady_clock::time_point since;  // when the edit was made
-};
-
-// The bytes on the screen, row by row from the top.
-struct ShownPicture {
-    WindowSize size;
-    std::vector<Rgba8> color;
-    std::vector<float> depth;  // see PictureState
-};
-
-// What `poll` changed in the shown picture.
-struct PictureChange {
-    bool replaced = false;         // the picture of another scene, camera or size than before
-    bool all = false;              // another size: everything
-    std::vector<PixelRect> tiles;  // otherwise: these tiles and no other pixel
-    [[nodiscard]] bool any() const { return all || !tiles.empty(); }
-};
 
 // How often, since the session began: for tests, which count rather than measure.
 struct SessionTotals {
