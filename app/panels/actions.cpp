@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/panels/fields.h"
 #include "app/panels/files.h"
+#include "app/panels/names.h"
 #include "app/panels/panels.h"
+#include "app/panels/scene_edits.h"
 #include "app/shape/shapes.h"
 #include "core/field/field.h"
 #include "core/render/framing.h"

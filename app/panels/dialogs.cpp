@@ -7,8 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
 #include "app/panels/files.h"
+#include "app/panels/layout.h"
+#include "app/panels/scene_edits.h"
 #include "core/scene/text.h"
 
 namespace ivory {

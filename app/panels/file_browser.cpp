@@ -7,9 +7,12 @@
 #include <system_error>
 #include <utility>
 
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
 #include "app/panels/files.h"
+#include "app/panels/layout.h"
 #include "app/panels/panels.h"
+#include "app/panels/scene_edits.h"
+#include "app/panels/text_field.h"
 #include "app/panels/theme.h"
 #include "core/scene/text.h"
 

@@ -8,7 +8,8 @@
 #include <string_view>
 
 #include "app/panels/actions.h"
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
+#include "app/panels/layout.h"
 #include "app/panels/parts.h"
 #include "app/panels/theme.h"
 

@@ -8,9 +8,16 @@
 #include <variant>
 
 #include "app/panels/actions.h"
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
+#include "app/panels/color_field.h"
+#include "app/panels/layout.h"
+#include "app/panels/names.h"
+#include "app/panels/number_field.h"
 #include "app/panels/parts.h"
+#include "app/panels/scene_edits.h"
+#include "app/panels/text_field.h"
 #include "app/panels/theme.h"
+#include "app/panels/typed_number.h"
 #include "app/shape/shapes.h"
 #include "core/scene/text.h"
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "app/panels/fields.h"
 #include "app/panels/files.h"
 #include "app/panels/parts.h"
+#include "app/panels/scene_edits.h"
 #include "app/panels/theme.h"
 
 namespace ivory {

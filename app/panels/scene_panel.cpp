@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "app/panels/actions.h"
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
+#include "app/panels/layout.h"
+#include "app/panels/names.h"
 #include "app/panels/parts.h"
+#include "app/panels/shown_text.h"
 #include "app/panels/theme.h"
 #include "app/shape/shapes.h"
 #include "core/render/shade.h"

@@ -8,8 +8,10 @@
 #include <cstdio>
 #include <string>
 
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
+#include "app/panels/layout.h"
 #include "app/panels/parts.h"
+#include "app/panels/shown_text.h"
 #include "app/panels/theme.h"
 
 namespace ivory {

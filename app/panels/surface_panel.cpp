@@ -13,9 +13,14 @@
 #include <vector>
 
 #include "app/document/tidy.h"
-#include "app/panels/fields.h"
+#include "app/panels/buttons.h"
+#include "app/panels/color_field.h"
+#include "app/panels/layout.h"
+#include "app/panels/number_field.h"
 #include "app/panels/parts.h"
+#include "app/panels/scene_edits.h"
 #include "app/panels/theme.h"
+#include "app/panels/typed_number.h"
 #include "core/field/field.h"
 #include "core/field/surface.h"
 #include "core/scene/text.h"

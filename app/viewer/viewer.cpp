@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "app/panels/actions.h"
-#include "app/panels/fields.h"
+#include "app/panels/names.h"
 #include "app/panels/panels.h"
+#include "app/panels/shown_text.h"
 #include "app/platform/imgui_input.h"
 #include "app/platform/imgui_renderer.h"
 #include "app/viewer/frame_texture.h"

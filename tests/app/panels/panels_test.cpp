@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "app/panels/fields.h"
+#include "app/panels/shown_text.h"
+#include "app/panels/typed_number.h"
 #include "core/scene/scene_fault.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"

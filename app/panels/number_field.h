@@ -1,0 +1,36 @@
+// Numbers to drag or to type into. Each control records itself in state.widgets and changes the
+// scene as scene_edits.h says.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "app/panels/viewer_state.h"
+
+namespace ivory {
+
+struct NumberField {
+    std::string id;
+    std::string what;  // names the change in the history: "Change radius of circle 1"
+    double value = 0;
+    double step = 0.01;  // of a drag, per pixel at scale 1; a power of ten
+    // Where a drag stops. Typed numbers are held to the rules of the scene instead.
+    double least = -std::numeric_limits<double>::infinity();
+    double greatest = std::numeric_limits<double>::infinity();
+    std::optional<int> axis = std::nullopt;  // marked in its colour
+};
+
+// A field to drag sideways (Shift: fine), or to type into after a click, Ctrl+click or Tab: what is
+// typed becomes exactly that double. "+=1", "-=", "*=", "/=" change the number that stands. What no
+// scene may hold is refused with a message. Escape restores.
+void number_field(ViewerState& state, const NumberField& field, float width,
+                  const std::function<void(Scene&, double)>& set);
+
+// Three of them, ID.x, ID.y and ID.z, over the rest of the line.
+void vector_fields(ViewerState& state, const std::string& id, const std::string& what,
+                   const Vec3d& value, double step,
+                   const std::function<void(Scene&, const Vec3d&)>& set);
+
+}  // namespace ivory
