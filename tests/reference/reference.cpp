@@ -40,7 +40,7 @@ class FieldAlongRay {
     }
 
     Germ<I> over(const I& t, const Active<I>& active) {
-        Germ<I> sum{active.left_out.value - threshold_, active.left_out.slope};
+        Germ<I> sum{active.rest.value - threshold_, active.rest.slope};
         for (const std::size_t i : active.elements) add(sum, element(i, t));
         return sum;
     }
@@ -123,9 +123,8 @@ class Search {
 
   private:
     static Active<RealInterval> exactly(const Active<OutwardDouble>& active) {
-        return {
-            active.elements,
-            {reference::exactly(active.left_out.value), reference::exactly(active.left_out.slope)}};
+        return {active.elements,
+                {reference::exactly(active.rest.value), reference::exactly(active.rest.slope)}};
     }
 
     // The part of t >= 0 that can hold roots: where f = 0, some element of positive strength, of n,
@@ -177,16 +176,16 @@ class Search {
     Germ<OutwardDouble> over(const OutwardDouble& t, const Active<OutwardDouble>& active,
                              Active<OutwardDouble>& shorter) {
         const double little = 1e-60 * field_.threshold();
-        Germ<OutwardDouble> sum{active.left_out.value - OutwardDouble(exact_threshold_),
-                                active.left_out.slope};
-        shorter.left_out = active.left_out;
+        Germ<OutwardDouble> sum{active.rest.value - OutwardDouble(exact_threshold_),
+                                active.rest.slope};
+        shorter.rest = active.rest;
         for (const std::size_t i : active.elements) {
             const Germ<OutwardDouble> germ = rough_.element(i, t);
             FieldAlongRay<OutwardDouble>::add(sum, germ);
             const double value = std::max(std::fabs(germ.value.lo), std::fabs(germ.value.hi));
             const double slope = std::max(std::fabs(germ.slope.lo), std::fabs(germ.slope.hi));
             if (value < little && slope * least_width_ < little) {
-                FieldAlongRay<OutwardDouble>::add(shorter.left_out, germ);
+                FieldAlongRay<OutwardDouble>::add(shorter.rest, germ);
             } else {
                 shorter.elements.push_back(i);
             }
