@@ -34,7 +34,7 @@ class FieldAlongRay {
     Germ<I> element(std::size_t i, const I& t) {
         auto& prepared = prepared_[i];
         if (!prepared) {
-            prepared = std::make_unique<ElementAlongRay<I>>(field_.elements()[i], ray_, exponent_);
+            prepared = std::make_unique<ElementAlongRay<I>>(field_.ready()[i], ray_, exponent_);
         }
         return prepared->over(t);
     }
@@ -92,7 +92,7 @@ class Search {
   public:
     Search(const ReferenceField& field, const Ray& ray, double threshold_scale)
         : field_(field),
-          exponent_(-ElementAlongRay<RealInterval>::binary_exponent(ray.direction)),
+          exponent_(-binary_exponent(ray.direction)),
           exact_threshold_(RealInterval(field.threshold()) * RealInterval(threshold_scale)),
           rough_(field, ray, exponent_, OutwardDouble(exact_threshold_)),
           exact_(field, ray, exponent_, exact_threshold_),
@@ -142,7 +142,7 @@ class Search {
         for (const Element& element : field_.elements()) {
             if (element.strength <= 0) continue;
             double q = 1;
-            if (element.kernel == KernelKind::blinn) {
+            if (element.kernel == Kernel::blinn) {
                 const double q2 = std::log(element.strength) - std::log(threshold) +
                                   std::log(2 * positive) + 1e-9;
                 if (q2 < 0) continue;
@@ -150,7 +150,7 @@ class Search {
             }
             const auto [center, radius] = ball<I>(element.skeleton);
             const I foot = inner(minus(center, o), d) / d2;
-            const I half = (radius + I(element.width) * I(q)) / length;
+            const I half = (radius + I(element.greatest_width()) * I(q)) / length;
             const I lo = foot - half, hi = foot + half;
             if (hi.hi < 0) continue;
             const I part = lo.lo > 0 ? from_to(lo, hi) : from_to(I(0), hi);
@@ -159,17 +159,30 @@ class Search {
         return range;
     }
 
+    // A ball around the skeleton; a polygon's vertices come no farther from the first one where they
+    // are projected on a plane through it.
     template <class I>
     static std::pair<Triple<I>, I> ball(const Skeleton& skeleton) {
-        if (const auto* point = std::get_if<PointSkeleton>(&skeleton)) {
-            return {triple<I>(point->position), I(0)};
-        }
-        if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) {
-            const Triple<I> a = triple<I>(segment->a);
-            return {a, sqrt(norm2(minus(triple<I>(segment->b), a)))};
-        }
-        const auto& circle = std::get<CircleSkeleton>(skeleton);
-        return {triple<I>(circle.center), I(circle.radius)};
+        const Triple<I> center = triple<I>(first_place(skeleton));
+        const auto around = [&](const std::vector<Vec3d>& places) {
+            I square(0);
+            for (const Vec3d& place : places) {
+                const I own = norm2(minus(triple<I>(place), center));
+                if (own.hi > square.hi) square = own;
+            }
+            return I(sqrt(square).hi);
+        };
+        struct Radius {
+            const decltype(around)& from;
+            I operator()(const Point&) const { return I(0); }
+            I operator()(const Segment& s) const { return from({s.b}); }
+            I operator()(const Circle& s) const { return I(s.radius); }
+            I operator()(const Disc& s) const { return I(s.radius); }
+            I operator()(const Polygon& s) const { return from(s.vertices); }
+            I operator()(const Curve& s) const { return from(s.control_points); }
+            I operator()(const Polyline& s) const { return from(s.points); }
+        };
+        return {center, std::visit(Radius{around}, skeleton)};
     }
 
     // As FieldAlongRay::over; `shorter` gets the elements that add less than 1e-60 T to f here.
@@ -344,15 +357,20 @@ ReferenceAnswer first_root(const ReferenceField& field, const Ray& ray, double t
     return Search(field, ray, threshold_scale).run();
 }
 
-ReferenceField::ReferenceField(const Scene& scene) : threshold_(scene.threshold) {
-    std::copy_if(scene.elements.begin(), scene.elements.end(), std::back_inserter(elements_),
-                 [](const Element& element) { return element.visible; });
+ReferenceField::ReferenceField(const ReferenceScene& scene) : threshold_(scene.threshold) {
+    for (const Element& element : scene.elements) {
+        if (!element.visible) continue;
+        elements_.push_back(element);
+        ready_.emplace_back(element);
+    }
 }
+
+ReferenceField::ReferenceField(const Scene& scene) : ReferenceField(from_core(scene)) {}
 
 Germ<RealInterval> ReferenceField::along(const Ray& ray, const RealInterval& t,
                                          double threshold_scale) const {
     Germ<RealInterval> sum{-(RealInterval(threshold_) * RealInterval(threshold_scale)), 0.0};
-    for (const Element& element : elements_) {
+    for (const ReadyElement& element : ready_) {
         FieldAlongRay<RealInterval>::add(sum,
                                          ElementAlongRay<RealInterval>(element, ray, 0).over(t));
     }
@@ -376,23 +394,21 @@ SpaceGerm<I> from_nearest(const Triple<I>& away, const I& w) {
 }
 
 template <class I>
-SpaceGerm<I> squared_distance(const PointSkeleton& point, const Triple<I>& p, const I& w) {
+SpaceGerm<I> square_in_space(const Point& point, const Triple<I>& p, const I& w) {
     return from_nearest(minus(p, triple<I>(point.position)), w);
 }
 
 template <class I>
-SpaceGerm<I> squared_distance(const SegmentSkeleton& segment, const Triple<I>& p, const I& w) {
+SpaceGerm<I> square_in_space(const Segment& segment, const Triple<I>& p, const I& w) {
     const Triple<I> a = triple<I>(segment.a), b = triple<I>(segment.b);
     const Triple<I> m = minus(b, a), from_a = minus(p, a);
     if (segment.a == segment.b) return from_nearest(from_a, w);
-    const I u = inner(from_a, m) / norm2(m);
-    const auto clamp = [](const auto& x) { return x < 0 ? I(0) : x > 1 ? I(1) : I(x); };
-    return from_nearest(minus(from_a, times(m, hull(clamp(u.lo), clamp(u.hi)))), w);
+    return from_nearest(minus(from_a, times(m, clamped(inner(from_a, m) / norm2(m)))), w);
 }
 
 template <class I>
-SpaceGerm<I> squared_distance(const CircleSkeleton& circle, const Triple<I>& p, const I& w) {
-    const Triple<I> n = ElementAlongRay<I>::unit_normal(circle.normal);
+SpaceGerm<I> square_in_space(const Circle& circle, const Triple<I>& p, const I& w) {
+    const Triple<I> n = unit<I>(circle.normal);
     const Triple<I> u = minus(p, triple<I>(circle.center));
     if (circle.radius == 0) return from_nearest(u, w);
     const I h = inner(u, n), rho = sqrt(norm2(outer(n, u)));
@@ -405,15 +421,92 @@ SpaceGerm<I> squared_distance(const CircleSkeleton& circle, const Triple<I>& p, 
     return germ;
 }
 
+// From the nearest point: the centre and the foot in the plane, drawn in to the rim.
+template <class I>
+SpaceGerm<I> square_in_space(const Disc& disc, const Triple<I>& p, const I& w) {
+    const Triple<I> n = unit<I>(disc.normal), u = minus(p, triple<I>(disc.center));
+    const Triple<I> up = times(n, inner(u, n)), off_axis = minus(u, up);
+    const I r(disc.radius), rho2 = norm2(off_axis);
+    if (sqr(r).lo >= rho2.hi) return from_nearest(up, w);
+    const I drawn_in = clamped(r / sqrt(rho2));
+    return from_nearest(minus(u, times(off_axis, drawn_in)), w);
+}
+
+// The conical part of a taper: with y = p - a and |y x m|^2 = r^2 |m|^2, the formula
+// 1 / s = kappa^2 + (W / r)^2 is s = |y x m|^2 / N, N = |m|^2 w^2 + 2 dw w y.m + dw^2 |y|^2.
+template <class I>
+std::optional<SpaceGerm<I>> conical_square(const Element& element, const Triple<I>& p) {
+    const auto* segment = std::get_if<Segment>(&element.skeleton);
+    if (segment == nullptr || element.widths.empty()) return std::nullopt;
+    const I w(element.widths[0]), dw = I(element.widths[1]) - w;
+    const Triple<I> a = triple<I>(segment->a), m = minus(triple<I>(segment->b), a), y = minus(p, a);
+    const I along = inner(y, m), y2 = norm2(y), m2 = norm2(m);
+    const I foot = along * w + dw * y2, whole = m2 * w + dw * along;
+    if (!certainly_positive(foot) || !certainly_positive(whole - foot)) return std::nullopt;
+    const I below = m2 * sqr(w) + I(2) * dw * w * along + sqr(dw) * y2;
+    if (!certainly_positive(below)) return std::nullopt;
+    SpaceGerm<I> germ{norm2(outer(y, m)) / below, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const I above_rise = I(2) * (m2 * y[k] - along * m[k]);
+        const I below_rise = I(2) * dw * (w * m[k] + dw * y[k]);
+        germ.slope[k] = (above_rise - germ.value * below_rise) / below;
+    }
+    return germ;
+}
+
+// s and grad s, whose components enclose those of all feet.
+template <class I>
+SpaceGerm<I> square_in_space(const ReadyElement& ready, const Triple<I>& p) {
+    const Element& element = ready.element;
+    const I w(element.width);
+    if (ready.bodies) {
+        if (const auto cone = conical_square(element, p)) return *cone;
+        const Triple<I> x = divided(minus(p, triple<I>(first_place(element.skeleton))), w);
+        const Feet<I> feet = feet_of(*ready.bodies, x);
+        SpaceGerm<I> germ{feet.least(), feet.all().front().pull};
+        for (const Foot<I>& foot : feet.all()) germ.slope = hull(germ.slope, foot.pull);
+        germ.slope = times(germ.slope, I(2) / w);
+        return germ;
+    }
+    return std::visit(
+        [&](const auto& skeleton) -> SpaceGerm<I> {
+            if constexpr (requires { square_in_space(skeleton, p, w); }) {
+                return square_in_space(skeleton, p, w);
+            } else {
+                return {};  // these have bodies
+            }
+        },
+        element.skeleton);
+}
+
 // F and grad F of one element at p.
 template <class I>
-SpaceGerm<I> field_in_space(const Element& element, const Triple<I>& p) {
-    const SpaceGerm<I> s = std::visit(
-        [&](const auto& skeleton) { return squared_distance(skeleton, p, I(element.width)); },
-        element.skeleton);
-    const Germ<I> k = kernel_germ(element.kernel, s.value);
-    const I b(element.strength);
+SpaceGerm<I> field_in_space(const ReadyElement& ready, const Triple<I>& p) {
+    const SpaceGerm<I> s = square_in_space(ready, p);
+    const Germ<I> k = kernel_germ(ready.element.kernel, s.value);
+    const I b(ready.element.strength);
     return {b * k.value, times(s.slope, b * k.slope)};
+}
+
+// Feet that a move of 1e-6 widths could make the nearest one, with pulls that differ.
+bool is_near_kink(const ReadyElement& ready, const Triple<OutwardDouble>& p) {
+    constexpr double near = 1e-6;
+    const Element& element = ready.element;
+    const OutwardDouble w(element.width);
+    if (const auto* circle = std::get_if<Circle>(&element.skeleton)) {
+        if (circle->radius == 0) return false;
+        const auto u = minus(p, triple<OutwardDouble>(circle->center));
+        return sqrt(norm2(outer(unit<OutwardDouble>(circle->normal), u))).lo < near * element.width;
+    }
+    if (!ready.bodies) return false;
+    const auto x = divided(minus(p, triple<OutwardDouble>(first_place(element.skeleton))), w);
+    const double q = std::sqrt(feet_of(*ready.bodies, x).least().hi);
+    const Feet<OutwardDouble> feet = feet_of(*ready.bodies, x, 4 * near * (q + near));
+    Triple<OutwardDouble> pull = feet.all().front().pull;
+    for (const auto& foot : feet.all()) pull = hull(pull, foot.pull);
+    double spread = 0;
+    for (const OutwardDouble& component : pull) spread = std::max(spread, component.width());
+    return spread > 1e-3 * q;
 }
 
 double greatest(const OutwardDouble& x) { return std::max(std::fabs(x.lo), std::fabs(x.hi)); }
@@ -431,9 +524,10 @@ PointValue ReferenceField::at(const Ray& ray, const Real& t) const {
     PointValue result;
     result.f = -Exact(threshold_);
     Exact weights(0.0);
-    for (const Element& element : elements_) {
+    for (const ReadyElement& ready : ready_) {
+        const Element& element = ready.element;
         SpaceGerm<Exact> germ;
-        const SpaceGerm<Rough> rough = field_in_space(element, rough_p);
+        const SpaceGerm<Rough> rough = field_in_space(ready, rough_p);
         double size = greatest(rough.value);
         for (const Rough& slope : rough.slope) {
             size = std::max(size, greatest(slope) * element.width);
@@ -442,7 +536,7 @@ PointValue ReferenceField::at(const Ray& ray, const Real& t) const {
             germ = {exactly(rough.value),
                     {exactly(rough.slope[0]), exactly(rough.slope[1]), exactly(rough.slope[2])}};
         } else {
-            germ = field_in_space(element, p);
+            germ = field_in_space(ready, p);
         }
         const Exact& field = germ.value;
         const Exact weight(field.lo < 0 ? Real(0) : field.lo, field.hi < 0 ? Real(0) : field.hi);
@@ -455,6 +549,7 @@ PointValue ReferenceField::at(const Ray& ray, const Real& t) const {
         result.f = result.f + field;
         result.element.push_back(field);
         result.rise.push_back(germ.slope);
+        result.near_kink.push_back(is_near_kink(ready, rough_p));
     }
     for (Exact& component : result.color) {
         if (mpfr_sgn(weights.hi.raw()) > 0) component = component / weights;

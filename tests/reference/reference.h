@@ -8,6 +8,7 @@
 #include "core/trace/ray.h"
 #include "tests/reference/along_ray.h"
 #include "tests/reference/multiprecision.h"
+#include "tests/reference/scene.h"
 
 namespace ivory::reference {
 
@@ -18,15 +19,20 @@ struct PointValue {
     std::vector<Triple<RealInterval>> rise;  // grad F_i; all numbers where it has none
     Triple<RealInterval> gradient;           // of f
     Triple<RealInterval> color;              // sum C_i max(F_i, 0) / sum max(F_i, 0)
+    // Whether within some 1e-6 w of the point, w the element's width, the nearest point of its
+    // skeleton jumps, so that grad F_i does.
+    std::vector<bool> near_kink;
 };
 
 // The elements of a scene that are part of its field. Immutable; shared between threads freely.
 class ReferenceField {
   public:
+    explicit ReferenceField(const ReferenceScene& scene);
     explicit ReferenceField(const Scene& scene);
 
     [[nodiscard]] double threshold() const { return threshold_; }
     [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  // visible
+    [[nodiscard]] const std::vector<ReadyElement>& ready() const { return ready_; }   // the same
 
     // At o + t d, t a point.
     [[nodiscard]] PointValue at(const Ray& ray, const Real& t) const;
@@ -38,6 +44,7 @@ class ReferenceField {
   private:
     double threshold_;
     std::vector<Element> elements_;
+    std::vector<ReadyElement> ready_;
 };
 
 enum class Outcome {

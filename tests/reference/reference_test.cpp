@@ -16,9 +16,9 @@
 namespace ivory::reference {
 namespace {
 
-Element element(const Skeleton& skeleton, KernelKind kernel = KernelKind::blinn,
-                double strength = 1, double width = 1) {
-    Element result;
+ivory::Element element(const ivory::Skeleton& skeleton, KernelKind kernel = KernelKind::blinn,
+                       double strength = 1, double width = 1) {
+    ivory::Element result;
     result.skeleton = skeleton;
     result.kernel = kernel;
     result.strength = strength;
@@ -26,7 +26,7 @@ Element element(const Skeleton& skeleton, KernelKind kernel = KernelKind::blinn,
     return result;
 }
 
-Scene scene_of(double threshold, std::vector<Element> elements) {
+Scene scene_of(double threshold, std::vector<ivory::Element> elements) {
     Scene scene;
     scene.threshold = threshold;
     scene.elements = std::move(elements);
@@ -112,20 +112,41 @@ TEST(OutwardDouble, EnclosesTheExactResult) {
 TEST(ReferenceKernel, IsTheFormulaOfTheFormat) {
     for (int i = 0; i <= 80; ++i) {
         const RealInterval q = RealInterval(i) / RealInterval(64), s = sqr(q);
-        const auto near = [&](KernelKind kind, const RealInterval& expected) {
+        const auto near = [&](Kernel kind, const RealInterval& expected) {
             const RealInterval off = kernel_germ(kind, s).value - expected;
             EXPECT_TRUE(off.lo <= Real(0.0) && off.hi >= Real(0.0)) << i;
             EXPECT_LT(off.width(), Real(0x1p-240)) << i;
         };
         const RealInterval zero(0), one(1), nine(9);
-        near(KernelKind::blinn, exp(-s));
-        near(KernelKind::nishimura, 3 * i <= 64 ? one - RealInterval(3) * s
-                                    : i <= 64   ? RealInterval(1.5) * sqr(one - q)
-                                                : zero);
-        near(KernelKind::wyvill, i <= 64 ? one - RealInterval(4) / nine * s * s * s +
-                                               RealInterval(17) / nine * s * s -
-                                               RealInterval(22) / nine * s
-                                         : zero);
+        near(Kernel::blinn, exp(-s));
+        near(Kernel::nishimura, 3 * i <= 64 ? one - RealInterval(3) * s
+                                : i <= 64   ? RealInterval(1.5) * sqr(one - q)
+                                            : zero);
+        near(Kernel::wyvill, i <= 64
+                                 ? one - RealInterval(4) / nine * s * s * s +
+                                       RealInterval(17) / nine * s * s - RealInterval(22) / nine * s
+                                 : zero);
+        near(Kernel::murakami, i <= 64 ? sqr(one - s) : zero);
+        near(Kernel::blobtree,
+             i <= 64 ? one - RealInterval(3) * s + RealInterval(3) * s * s - s * s * s : zero);
+    }
+}
+
+// k' between two points is a difference quotient, and rises.
+TEST(ReferenceKernel, HasTheSlopeOfItsFormula) {
+    for (const Kernel kind :
+         {Kernel::blinn, Kernel::nishimura, Kernel::wyvill, Kernel::murakami, Kernel::blobtree}) {
+        for (int i = 0; i <= 140; ++i) {
+            const RealInterval s = RealInterval(i) / RealInterval(128);
+            const RealInterval next = s + RealInterval(0x1p-40);
+            const Germ<RealInterval> here = kernel_germ(kind, s), there = kernel_germ(kind, next);
+            const RealInterval quotient = (there.value - here.value) / RealInterval(0x1p-40);
+            const Germ<RealInterval> all = kernel_germ(kind, from_to(s, next));
+            EXPECT_TRUE(all.slope.lo <= quotient.hi && quotient.lo <= all.slope.hi) << i;
+            EXPECT_TRUE(all.value.lo <= there.value.lo && here.value.hi <= all.value.hi) << i;
+            EXPECT_TRUE(here.slope.lo <= quotient.hi && quotient.lo <= there.slope.hi) << i;
+            EXPECT_LT(all.slope.width(), Real(i == 0 || i == 128 ? 3 : 1e-9)) << i;
+        }
     }
 }
 
@@ -218,7 +239,7 @@ TEST(FirstRoot, TellsATangentOffByOneUnitInTheLastPlace) {
     // The line at height h over a nishimura point of width 4: max f = 1 - 3 h^2 / 16 - T.
     const double height = 1, threshold = 0.8125;
     const Ray ray{{-9, height, 0}, {1, 0, 0}};
-    const std::vector<Element> point{element(origin_point, KernelKind::nishimura, 1, 4)};
+    const std::vector<ivory::Element> point{element(origin_point, KernelKind::nishimura, 1, 4)};
     const ReferenceField below(scene_of(std::nextafter(threshold, 0), point));
     const ReferenceField above(scene_of(std::nextafter(threshold, 1), point));
     EXPECT_EQ(first_root(below, ray).outcome, Outcome::hit);
@@ -227,7 +248,7 @@ TEST(FirstRoot, TellsATangentOffByOneUnitInTheLastPlace) {
 }
 
 TEST(FirstRoot, LeavesOutInvisibleElements) {
-    Element hidden = element(origin_point);
+    ivory::Element hidden = element(origin_point);
     hidden.visible = false;
     const ReferenceField field(scene_of(0.5, {hidden}));
     EXPECT_EQ(first_root(field, {{-9, 0, 0}, {1, 0, 0}}).outcome, Outcome::miss);

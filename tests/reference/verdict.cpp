@@ -71,29 +71,17 @@ std::optional<bool> holds_first_root(const ReferenceField& field, const Ray& ray
     return std::nullopt;
 }
 
-bool near_axis(const Element& element, const Ray& ray, const Real& t) {
-    const auto* circle = std::get_if<CircleSkeleton>(&element.skeleton);
-    if (circle == nullptr || circle->radius == 0) return false;
-    const auto n = ElementAlongRay<RealInterval>::unit_normal(circle->normal);
-    auto u = minus(triple<RealInterval>(ray.origin), triple<RealInterval>(circle->center));
-    const auto d = triple<RealInterval>(ray.direction);
-    for (std::size_t k = 0; k < 3; ++k) u[k] = u[k] + RealInterval(t) * d[k];
-    return sqrt(norm2(outer(n, u))).lo.to_double() < 1e-6 * element.width;
-}
-
 double norm(const Triple<RealInterval>& v) { return sqrt(norm2(v)).hi.to_double(MPFR_RNDU); }
 
-double normal_error(const ReferenceField& field, const Ray& ray, const Real& m,
-                    const PointValue& point, double w, const Vec3d& normal) {
+double normal_error(const ReferenceField& field, const PointValue& point, double w,
+                    const Vec3d& normal) {
     const RealInterval steepness = sqrt(norm2(point.gradient));
     double rises = 0;
     for (const auto& rise : point.rise) rises += norm(rise);
     const double least = std::max(1e-4 * rises, 1e-6 * field.threshold() / w);
     if (!(steepness.lo.to_double() >= least)) return Verdict::nothing;
     for (std::size_t i = 0; i < point.rise.size(); ++i) {
-        if (norm(point.rise[i]) > 1e-9 * rises && near_axis(field.elements()[i], ray, m)) {
-            return Verdict::nothing;
-        }
+        if (point.near_kink[i] && norm(point.rise[i]) > 1e-9 * rises) return Verdict::nothing;
     }
     Triple<RealInterval> difference;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -121,31 +109,39 @@ struct Nearest {
     double width = 1;  // w
 };
 
-Vec3d skeleton_point(const Skeleton& skeleton) {
-    if (const auto* point = std::get_if<PointSkeleton>(&skeleton)) return point->position;
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) return segment->a;
-    return std::get<CircleSkeleton>(skeleton).center;
+// From p to the skeleton of an element that has one width.
+double distance(const ReadyElement& ready, const Vec3d& p) {
+    const ElementAlongRay<OutwardDouble> still(ready, {p, {0, 0, 1}}, 0);
+    return std::sqrt(still.square(OutwardDouble(0)).value.hi) * ready.element.width;
+}
+ReadyElement with_one_width(const ReadyElement& ready) {
+    if (ready.element.widths.empty()) return ready;
+    Element element = ready.element;
+    element.widths.clear();
+    return ReadyElement(element);
 }
 
-double distance(const Skeleton& skeleton, const Vec3d& p) {
-    const Vec3d from = skeleton_point(skeleton);
-    const Vec3d u{p.x - from.x, p.y - from.y, p.z - from.z};
-    const auto product = [](const Vec3d& a, const Vec3d& b) {
-        return a.x * b.x + a.y * b.y + a.z * b.z;
-    };
-    if (const auto* segment = std::get_if<SegmentSkeleton>(&skeleton)) {
-        const Vec3d m{segment->b.x - from.x, segment->b.y - from.y, segment->b.z - from.z};
-        const double m2 = product(m, m);
-        const double foot = m2 > 0 ? std::clamp(product(u, m) / m2, 0.0, 1.0) : 0;
-        return length({u.x - foot * m.x, u.y - foot * m.y, u.z - foot * m.z});
+// How far a skeleton reaches from its first place.
+struct Reach {
+    const Vec3d& from;
+
+    double operator()(const Point&) const { return 0; }
+    double operator()(const Segment& s) const { return to({s.b}); }
+    double operator()(const Circle& s) const { return s.radius; }
+    double operator()(const Disc& s) const { return s.radius; }
+    double operator()(const Polygon& s) const { return to(s.vertices); }
+    double operator()(const Curve& s) const { return to(s.control_points); }
+    double operator()(const Polyline& s) const { return to(s.points); }
+
+  private:
+    [[nodiscard]] double to(const std::vector<Vec3d>& places) const {
+        double farthest = 0;
+        for (const Vec3d& p : places) {
+            farthest = std::max(farthest, length({p.x - from.x, p.y - from.y, p.z - from.z}));
+        }
+        return farthest;
     }
-    if (const auto* circle = std::get_if<CircleSkeleton>(&skeleton)) {
-        const double h = product(u, circle->normal) / length(circle->normal);
-        const double rho = std::sqrt(std::max(0.0, product(u, u) - h * h));
-        return std::hypot(rho - circle->radius, h);
-    }
-    return length(u);
-}
+};
 
 Nearest nearest(const ReferenceField& field, const Ray& ray, const ReferenceAnswer& known) {
     const auto at = [&](double t) {
@@ -156,24 +152,21 @@ Nearest nearest(const ReferenceField& field, const Ray& ray, const ReferenceAnsw
     const double d = length(ray.direction);
     double least = std::numeric_limits<double>::infinity();
     Nearest result;
-    for (const Element& element : field.elements()) {
-        const Vec3d c = skeleton_point(element.skeleton);
+    for (const ReadyElement& written : field.ready()) {
+        const ReadyElement ready = with_one_width(written);
+        const Element& element = ready.element;
+        const Vec3d c = first_place(element.skeleton);
         const Vec3d from{ray.origin.x - c.x, ray.origin.y - c.y, ray.origin.z - c.z};
         double own = std::numeric_limits<double>::infinity();
         if (known.outcome == Outcome::hit) {
-            own = distance(element.skeleton, at(known.t.lo.to_double()));
+            own = distance(ready, at(known.t.lo.to_double()));
         } else {
             const double foot = -(from.x * (ray.direction.x / d) + from.y * (ray.direction.y / d) +
                                   from.z * (ray.direction.z / d));
-            double reach = 0;
-            if (const auto* s = std::get_if<SegmentSkeleton>(&element.skeleton)) {
-                reach = length({s->b.x - s->a.x, s->b.y - s->a.y, s->b.z - s->a.z});
-            } else if (const auto* circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
-                reach = circle->radius;
-            }
+            const double reach = std::visit(Reach{c}, element.skeleton);
             for (int step = -16; step <= 16; ++step) {
                 const double along = std::max(0.0, foot + reach * step / 16.0);
-                own = std::min(own, distance(element.skeleton, at(along / d)));
+                own = std::min(own, distance(ready, at(along / d)));
             }
         }
         if (own < least) {
@@ -247,7 +240,7 @@ Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, con
     const RealInterval span = (RealInterval(t.hi) - RealInterval(t.lo)) * d;
     if (w > 0) {
         verdict.bracket = (span / RealInterval(w)).hi.to_double();
-        verdict.normal_error = normal_error(field, ray, m, point, w, answer.surface.normal);
+        verdict.normal_error = normal_error(field, point, w, answer.surface.normal);
         verdict.color_error = color_error(field, point, answer.surface.color);
     }
     if (reference.outcome == Outcome::hit) {

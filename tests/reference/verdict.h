@@ -34,14 +34,14 @@ struct Verdict {
 
 // Normal and colour are judged for whatever has a finite bracket, at m = (t_lo + t_hi) / 2 exactly. The
 // normal is not judged where the gradient is near zero or undefined: |grad f| below 1e-4 of the sum
-// of |grad F_i|, or below 1e-6 T / w, or within 1e-6 w of the axis of a circle that adds to it. The
+// of |grad F_i|, or below 1e-6 T / w, or within 1e-6 w of where an element that adds to it has a kink. The
 // colour is judged where the positive F_i sum to T / 2 or more.
 [[nodiscard]] Verdict check(const ReferenceField& field, const Ray& ray, double tolerance,
                             const Answer& answer);
 
 // For the thresholds T (1 +- 1e-11 max(1, L / w)) the reference gives the same outcome, hit or
 // miss, and first roots within E w / |d|. L is the largest absolute coordinate of origin - skeleton
-// point (position, a, or center) of the element that is nearest, by distance, to the hit, or for a
+// point (the first, or the center) of the element that is nearest, by distance, to the hit, or for a
 // ray without one to the ray; w is the width of that element. `known` is first_root(field, ray).
 [[nodiscard]] bool decidable(const ReferenceField& field, const Ray& ray, double tolerance,
                              const ReferenceAnswer& known);

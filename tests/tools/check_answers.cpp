@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/scene/error.h"
-#include "core/scene/scene_json.h"
+#include "tests/reference/scene.h"
 #include "tests/reference/verdict.h"
 #include "tests/tools/answer_lines.h"
 #include "tests/tools/run_tool.h"
@@ -224,7 +224,7 @@ int run(int argc, char** argv) {
         if (!in) throw Error(path + ": cannot be read");
         return in;
     };
-    const reference::ReferenceField field(read_scene(scene_path));
+    const reference::ReferenceField field(reference::read_reference_scene(scene_path));
     std::optional<std::vector<Ray>> rays;
     if (!rays_path.empty()) {
         std::ifstream in = open(rays_path);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <variant>
@@ -46,9 +47,11 @@ bool is_ray(const Ray& ray) {
 class Maker {
   public:
     Maker(const Scene& scene, std::uint64_t seed) : field_(scene), random_(seed) {
+        std::copy_if(scene.elements.begin(), scene.elements.end(), std::back_inserter(elements_),
+                     [](const Element& element) { return element.visible; });
         const double infinity = std::numeric_limits<double>::infinity();
         Vec3d lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
-        for (const Element& element : field_.elements()) {
+        for (const Element& element : elements_) {
             for (const Vec3d& p : marks(element)) {
                 for (std::size_t k = 0; k < 3; ++k) {
                     lo[k] = std::min(lo[k], p[k] - 1.5 * element.width);
@@ -56,7 +59,7 @@ class Maker {
                 }
             }
         }
-        if (field_.elements().empty()) lo = {-1, -1, -1}, hi = {1, 1, 1};
+        if (elements_.empty()) lo = {-1, -1, -1}, hi = {1, 1, 1};
         center_ = plus(times(0.5, lo), 0.5, hi);
         size_ = 0.5 * length(from_to(lo, hi));
     }
@@ -126,7 +129,7 @@ class Maker {
     template <class Suits>
     std::optional<Skeleton> some_skeleton(const Suits& suits) {
         std::vector<Skeleton> found;
-        for (const Element& element : field_.elements()) {
+        for (const Element& element : elements_) {
             Skeleton skeleton = element.skeleton;
             if (suits(Members(skeleton))) found.push_back(skeleton);
         }
@@ -143,10 +146,10 @@ class Maker {
     }
     // Somewhere near the skeleton.
     Vec3d target() {
-        if (field_.elements().empty() || random_.chance(0.2)) {
+        if (elements_.empty() || random_.chance(0.2)) {
             return plus(center_, size_ * 0.6, random_.in_cube(1));
         }
-        const Element& element = field_.elements()[random_.below(field_.elements().size())];
+        const Element& element = elements_[random_.below(elements_.size())];
         const std::vector<Vec3d> points = marks(element);
         return plus(points[random_.below(points.size())], element.width, random_.in_cube(1.2));
     }
@@ -215,8 +218,8 @@ class Maker {
     void segment() {
         auto line = some_skeleton([](const Members& m) { return m.places.size() > 1; });
         if (!line || random_.chance(0.2)) {  // through a point of some skeleton
-            if (field_.elements().empty()) return;
-            const auto points = marks(field_.elements()[random_.below(field_.elements().size())]);
+            if (elements_.empty()) return;
+            const auto points = marks(elements_[random_.below(elements_.size())]);
             const Vec3d o = viewpoint();
             rays_.push_back({o, from_to(o, points[0])});
             return;
@@ -242,8 +245,8 @@ class Maker {
     }
 
     void inside() {
-        if (field_.elements().empty()) return;
-        const Element& element = field_.elements()[random_.below(field_.elements().size())];
+        if (elements_.empty()) return;
+        const Element& element = elements_[random_.below(elements_.size())];
         if (element.strength < 0) return;
         const auto points = marks(element);
         const Vec3d o = plus(points[random_.below(points.size())],
@@ -265,8 +268,8 @@ class Maker {
         Vec3d d{0, 0, 0};
         d[k] = random_.sign() * (random_.chance(0.5) ? 1 : random_.uniform(0.1, 10));
         Vec3d o = target();
-        if (!field_.elements().empty() && random_.chance(0.5)) {  // exactly through a mark
-            const auto points = marks(field_.elements()[random_.below(field_.elements().size())]);
+        if (!elements_.empty() && random_.chance(0.5)) {  // exactly through a mark
+            const auto points = marks(elements_[random_.below(elements_.size())]);
             o = points[0];
         }
         o[k] = center_[k] - 3 * size_ * (d[k] > 0 ? 1 : -1);
@@ -291,6 +294,7 @@ class Maker {
     }
 
     reference::ReferenceField field_;
+    std::vector<Element> elements_;  // visible
     Random random_;
     Vec3d center_;
     double size_ = 1;  // half the diagonal of a box around the scene
