@@ -5,6 +5,8 @@
 // k'' falls on each piece; where it jumps a range holds both one-sided values.
 
 #include "core/kernel/blinn.h"
+#include "core/kernel/blobtree.h"
+#include "core/kernel/murakami.h"
 #include "core/kernel/nishimura.h"
 #include "core/kernel/wyvill.h"
 
@@ -22,12 +24,14 @@
 
 namespace ivory {
 
-enum class KernelKind : unsigned char { blinn, nishimura, wyvill };
-using Kernels = TypeList<Blinn, Nishimura, Wyvill>;
+enum class KernelKind : unsigned char { blinn, nishimura, wyvill, murakami, blobtree };
+using Kernels = TypeList<Blinn, Nishimura, Wyvill, Murakami, BlobTree>;
 
 static_assert(index_in<Blinn, Kernels> == static_cast<std::size_t>(KernelKind::blinn));
 static_assert(index_in<Nishimura, Kernels> == static_cast<std::size_t>(KernelKind::nishimura));
 static_assert(index_in<Wyvill, Kernels> == static_cast<std::size_t>(KernelKind::wyvill));
+static_assert(index_in<Murakami, Kernels> == static_cast<std::size_t>(KernelKind::murakami));
+static_assert(index_in<BlobTree, Kernels> == static_cast<std::size_t>(KernelKind::blobtree));
 
 // What the file of a kernel has to say. Units and meanings: core/kernel/blinn.h; the quick forms for
 // SIMD, which are at the end of the same file, are asked for in core/kernel/kernel_lanes.inl.

@@ -20,7 +20,7 @@ struct StageValue {
 };
 
 // Each shape's and each kernel's formula, once more: one that is new has to be added.
-static_assert(shape_count == 3 && kernel_count == 3);
+static_assert(shape_count == 3 && kernel_count == 5);
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
 // but for the sums.
@@ -46,6 +46,12 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
         } else if (field.kernel[i] == KernelKind::wyvill && s < 1) {
             k = (1 - s) * (1 - s) * (9 - 4 * s) / 9;
             dk = -2 * (1 - s) * (11 - 6 * s) / 9;
+        } else if (field.kernel[i] == KernelKind::murakami && s < 1) {
+            k = (1 - s) * (1 - s);
+            dk = -2 * (1 - s);
+        } else if (field.kernel[i] == KernelKind::blobtree && s < 1) {
+            k = (1 - s) * (1 - s) * (1 - s);
+            dk = -3 * (1 - s) * (1 - s);
         } else if (s < 1) {
             const Real q = std::sqrt(s);
             k = s <= Real{1} / 9 ? 1 - 3 * s : Real{1.5} * (1 - q) * (1 - q);
