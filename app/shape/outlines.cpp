@@ -93,6 +93,13 @@ std::vector<PictureLine> hull_outline(const Projection& view, std::span<const Ba
     return {std::move(all)};
 }
 
+std::vector<PictureLine> disc_outline(const Projection& view, const Ring& rim, double distance) {
+    std::vector<Ball> balls;
+    for (int step = 0; step < ring_steps; ++step)
+        balls.push_back({at_step(rim, step, ring_steps), distance});
+    return hull_outline(view, balls);
+}
+
 // The outline of a tube around a curve: where its normal n, across the tangent, is also across the
 // line of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit
 // vectors across the tangent that fixes two, one for each edge.
@@ -115,6 +122,22 @@ std::vector<PictureLine> ring_outline(const Projection& view, const Ring& ring, 
         }
     }
     return edges;
+}
+
+// A ball about the middle of each square of a grid reaches its corners; those that the disc does not
+// reach are left out.
+void cover_disc(const Ring& rim, double distance, std::vector<Ball>& balls) {
+    const double r = rim.radius();
+    const int rows = std::clamp(pieces_to_cover(2 * r, distance), 1, 5);
+    const double half = r / rows, reach = (rows > 1 ? std::numbers::sqrt2 : 1) * half * (1 + 1e-9);
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < rows; ++j) {
+            const double x = (2 * i + 1) * half - r, y = (2 * j + 1) * half - r;
+            if (std::hypot(x, y) > r + reach) continue;
+            balls.push_back(
+                {rim.center() + x * rim.first_axis() + y * rim.second_axis(), distance + reach});
+        }
+    }
 }
 
 int pieces_to_cover(double curve_length, double distance) {

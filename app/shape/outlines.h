@@ -20,6 +20,7 @@ class Ring {
     [[nodiscard]] const Vec3d& center() const { return center_; }
     [[nodiscard]] const Vec3d& normal() const { return n_; }  // unit
     [[nodiscard]] const Vec3d& first_axis() const { return e1_; }
+    [[nodiscard]] const Vec3d& second_axis() const { return e2_; }
     [[nodiscard]] double radius() const { return radius_; }
 
   private:
@@ -35,6 +36,9 @@ class Ring {
 // Of the convex hull of balls:
 [[nodiscard]] std::vector<PictureLine> hull_outline(const Projection& view,
                                                     std::span<const Ball> balls);
+// of the disc within a ring, seen as the hull of balls around its rim:
+[[nodiscard]] std::vector<PictureLine> disc_outline(const Projection& view, const Ring& rim,
+                                                    double distance);
 // of a tube around a ring, both its edges:
 [[nodiscard]] std::vector<PictureLine> ring_outline(const Projection& view, const Ring& ring,
                                                     double distance);
@@ -52,5 +56,8 @@ void cover_curve(double curve_length, double distance, const Place& place,
     for (int i = 0; i < pieces; ++i)
         balls.push_back({place((i + 0.5) / pieces), distance + 0.5 * curve_length / pieces});
 }
+
+// Balls that cover all points within `distance` of the disc within a ring.
+void cover_disc(const Ring& rim, double distance, std::vector<Ball>& balls);
 
 }  // namespace ivory

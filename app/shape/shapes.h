@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/shape/circle.h"
+#include "app/shape/disc.h"
 #include "app/shape/point.h"
 #include "app/shape/segment.h"
 #include "app/shape/shape_in_hand.h"

@@ -57,7 +57,7 @@ constexpr std::string_view word_with_article{characters_with_article<S>.data(),
                                              characters_with_article<S>.size()};
 
 // The format has these too, as soon as they are in core/shape/shapes.h.
-constexpr std::array<std::string_view, 4> shapes_to_come{"disc", "polygon", "curve", "polyline"};
+constexpr std::array<std::string_view, 3> shapes_to_come{"polygon", "curve", "polyline"};
 constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
 // The kinds of objects that a scene is made of.

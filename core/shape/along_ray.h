@@ -29,7 +29,11 @@ struct Piece {
 // the circle.) rho'' = gamma rho_0^2 / rho^3 >= 0, where rho_0 is the least rho on the line; so
 // rho' rises, and s'' = 2 |d|^2 - 2 r rho''. Where rho can be 0, s' jumps downward and s'' is
 // unbounded below.
+//
+// Filled, a disc: s = max(rho - r, 0)^2 + h^2, which is convex, with s'' = 2 h'^2 where rho < r and
+// 2 h'^2 <= s'' <= 2 |d|^2 beyond. s' does not jump.
 struct CircleAlongRay {
+    bool filled = false;
     MovingSquare across;            // rho^2
     Interval<double> least_across;  // rho_0^2, enclosed
     double height = 0,
@@ -48,13 +52,20 @@ struct CircleAlongRay {
     [[nodiscard]] At at(double t) const;
     // Ranges over [t0, t1], t0 < t1, from the values at its ends.
     [[nodiscard]] Over over(double t0, double t1, const At& at0, const At& at1) const;
+    // {t: |h(t)| <= most}, enclosed from outside.
+    [[nodiscard]] Interval<double> within_height(double most) const;
+
+  private:
+    [[nodiscard]] Interval<double> off_rim(const Interval<double>& rho) const;
+    [[nodiscard]] Interval<double> rho_bend(const Interval<double>& rho) const;
+    [[nodiscard]] Over over_filled(double t0, double t1, const At& at0, const At& at1) const;
 };
 
 // One skeleton seen from one ray, for t in a span.
 struct SkeletonAlongRay {
     enum class Form : unsigned char {
         squares,   // pieces[0 .. piece_count): s is the square of the piece that t lies in
-        circle,    // circle
+        circle,    // circle, or a disc
         unbounded  // numbers too large or too small for the lemma: 0 <= k <= 1 is all that is known
     };
     Form form = Form::unbounded;

@@ -95,6 +95,7 @@ struct CircleSkeleton {
         const FromAxis axial = from_axis(r, n, span);
         e.form = SkeletonAlongRay::Form::circle;
         CircleAlongRay& c = e.circle;
+        c.filled = false;
         c.across = axial.across;
         c.height = axial.height;
         c.rise = axial.rise;

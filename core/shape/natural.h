@@ -29,10 +29,10 @@ struct RaySkeleton {
     bool collapsed = false;  // to the first place
     LinearVector from;       // its first place
     LinearVector from_b;     // the end b of a segment
-    LinearVector across;     // from a segment's line, from a circle's axis
-    Linear along;            // lambda of a segment, h of a circle
+    LinearVector across;     // from a segment's line, from a circle's or a disc's axis
+    Linear along;            // lambda of a segment, h of a circle or a disc
     Vec3<Span> axis;         // M of a segment
-    Span radius;             // of a circle
+    Span radius;             // of a circle, of a disc
 };
 
 template <class Number>

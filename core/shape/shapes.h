@@ -2,6 +2,7 @@
 // #includes, a word in `Shape` and one in `Shapes`.
 
 #include "core/shape/circle.h"
+#include "core/shape/disc.h"
 #include "core/shape/point.h"
 #include "core/shape/segment.h"
 
@@ -20,12 +21,13 @@
 
 namespace ivory {
 
-enum class Shape : std::uint8_t { point, segment, circle };
-using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton>;
+enum class Shape : std::uint8_t { point, segment, circle, disc };
+using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton>;
 
 static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
 static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
 static_assert(index_in<CircleSkeleton, Shapes> == static_cast<std::size_t>(Shape::circle));
+static_assert(index_in<DiscSkeleton, Shapes> == static_cast<std::size_t>(Shape::disc));
 
 // The one alternative that an element has; its index is the Shape.
 using Skeleton = Shapes::Into<std::variant>;

@@ -68,6 +68,19 @@ Affine sqrt(const Affine& a) {
     return on_line(slope, {below, std::max(tangent(lo), tangent(hi))}, a);
 }
 
+Affine at_least_0(const Affine& a) {
+    const Span all = range(a);
+    if (all.lo >= 0) return a;
+    if (all.hi <= 0) return {};
+    if (!(all.hi - all.lo < 1e100)) return {0, 0, infinity<double>};
+    const double slope = all.hi / (all.hi - all.lo);
+    Span offset(0.0);  // at 0
+    offset = hull(offset, Span(offset_below(0, slope, all.lo), offset_above(0, slope, all.lo)));
+    offset = hull(offset,
+                  Span(offset_below(all.hi, slope, all.hi), offset_above(all.hi, slope, all.hi)));
+    return on_line(slope, offset, a);
+}
+
 Affine segment_square(const RaySkeleton& e, const Affine& t) {
     const Affine lambda = linear(e.along, t);
     const Span all = range(lambda);

@@ -5,9 +5,9 @@
 // A vector from a skeleton is linear in t, start + t rate (core/shape/natural.h); s = q^2 is what the
 // shape's file says, in units of the element's width; then f = sum of b k(s) - T.
 //
-// A Number has: linear(start, rate, t), sum and difference, sqr, sqrt, scaled by an interval,
-// kernel(kind, s), any_kernel (any k in [0, 1], any slope), range(x), and, where hulling the cases of
-// a clamped foot is not the best it can do, segment_square.
+// A Number has: linear(start, rate, t), sum and difference, sqr, sqrt, at_least_0, scaled by an
+// interval, kernel(kind, s), any_kernel (any k in [0, 1], any slope), range(x), and, where hulling the
+// cases of a clamped foot is not the best it can do, segment_square.
 #pragma once
 
 #include <cstddef>

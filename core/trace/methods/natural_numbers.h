@@ -2,6 +2,7 @@
 // interval with the range of the derivative by t.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/interval/quick.h"
@@ -20,6 +21,7 @@ inline Plain operator+(Plain a, Plain b) { return {a.x + b.x}; }
 inline Plain less(Plain a, const Span& b) { return {a.x - b.lo}; }
 inline Plain sqr(Plain a) { return {a.x * a.x}; }
 inline Plain sqrt(Plain a) { return {std::sqrt(a.x)}; }
+inline Plain at_least_0(Plain a) { return {std::max(a.x, 0.0)}; }
 inline Plain hull(Plain, Plain b) { return b; }
 inline Span range(Plain a) { return Span(a.x); }
 inline Plain times(const Span& s, Plain a) { return {s.lo * a.x}; }
@@ -60,6 +62,7 @@ inline Range operator+(const Range& a, const Range& b) { return {quick::add(a.x,
 inline Range less(const Range& a, const Span& b) { return {quick::sub(a.x, b)}; }
 inline Range sqr(const Range& a) { return {quick::sqr(a.x)}; }
 inline Range sqrt(const Range& a) { return {quick::sqrt(a.x)}; }
+inline Range at_least_0(const Range& a) { return {{std::max(a.x.lo, 0.0), std::max(a.x.hi, 0.0)}}; }
 inline Range hull(const Range& a, const Range& b) { return {hull(a.x, b.x)}; }
 inline Span range(const Range& a) { return a.x; }
 inline Range times(const Span& s, const Range& a) { return {multiple(s, a.x)}; }
@@ -89,6 +92,12 @@ inline Dual sqrt(const Dual& a) {
     const Span root = quick::sqrt(a.x);
     const Span twice = quick::scale(2, root);
     return {root, twice.lo > 0 ? quick::div(a.slope, twice) : a.slope / twice};
+}
+// Its square has a derivative everywhere, 0 where a <= 0.
+inline Dual at_least_0(const Dual& a) {
+    if (a.x.lo >= 0) return a;
+    if (a.x.hi <= 0) return {Span(0.0), Span(0.0)};
+    return {{0.0, a.x.hi}, hull(a.slope, Span(0.0))};
 }
 inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.slope, b.slope)}; }
 inline Span range(const Dual& a) { return a.x; }

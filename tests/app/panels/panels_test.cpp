@@ -432,13 +432,13 @@ TEST(Threshold, TheSlidersEndsStayWhileItIsDragged) {
 
 TEST(Elements, EachShapeIsAddedSelectedAndValid) {
     ViewerBench bench;
-    for (const char* shape : {"point", "segment", "circle"}) {
+    for (const char* shape : {"point", "segment", "circle", "disc"}) {
         bench.click(std::string("add.") + shape);
         ASSERT_EQ(bench.state.document.selected(), bench.scene().elements.size() - 1);
         EXPECT_EQ(std::string(shape_word(bench.scene().elements.back().skeleton)), shape);
         EXPECT_FALSE(find_fault(bench.scene()));
     }
-    for (int i = 0; i < 3; ++i) bench.key(Key::z, {.control = true});
+    for (int i = 0; i < 4; ++i) bench.key(Key::z, {.control = true});
     EXPECT_TRUE(bench.scene().elements.empty());
 }
 

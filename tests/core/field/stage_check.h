@@ -20,7 +20,7 @@ struct StageValue {
 };
 
 // Each shape's and each kernel's formula, once more: one that is new has to be added.
-static_assert(shape_count == 3 && kernel_count == 5);
+static_assert(shape_count == 4 && kernel_count == 5);
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
 // but for the sums.
@@ -38,6 +38,10 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
         } else if (field.shape[i] == Shape::circle) {
             const Vec3<Real> across = v - dot(v, m) * m;
             away = v - (e.parameter / std::sqrt(dot(across, across))) * across;
+        } else if (field.shape[i] == Shape::disc) {
+            const Vec3<Real> across = v - dot(v, m) * m;
+            const Real rho = std::sqrt(dot(across, across));
+            away = rho > e.parameter ? v - (e.parameter / rho) * across : v - across;
         }
         const Real s = dot(away, away) * e.inverse_square;
         Real k = 0, dk = 0;

@@ -196,6 +196,8 @@ std::vector<std::uint64_t> all_bits(const Scene& scene) {
             vector(segment->a), vector(segment->b);
         } else if (const auto* const circle = std::get_if<CircleSkeleton>(&element.skeleton)) {
             vector(circle->center), vector(circle->normal), number(circle->radius);
+        } else if (const auto* const disc = std::get_if<DiscSkeleton>(&element.skeleton)) {
+            vector(disc->center), vector(disc->normal), number(disc->radius);
         }
         vector(element.color), number(element.strength), number(element.width);
     }
@@ -282,19 +284,22 @@ class RandomScenes {
 
     Element element(std::size_t i) {
         Element element;
-        switch (random_() % 3) {
+        switch (random_() % 4) {
             case 0:
                 element.skeleton = PointSkeleton{vector()};
                 break;
             case 1:
                 element.skeleton = SegmentSkeleton{vector(), vector()};
                 break;
-            default:
+            case 2:
                 element.skeleton = CircleSkeleton{vector(), direction(), std::abs(any())};
+                break;
+            default:
+                element.skeleton = DiscSkeleton{vector(), direction(), std::abs(any())};
         }
         if (chance()) element.name = name(i);
         if (chance()) element.color = color();
-        element.kernel = static_cast<KernelKind>(random_() % 3);
+        element.kernel = static_cast<KernelKind>(random_() % kernel_count);
         if (chance()) element.strength = chance() ? positive() : -positive();
         if (chance()) element.width = positive();
         element.visible = chance();

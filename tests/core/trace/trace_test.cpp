@@ -8,6 +8,7 @@
 
 #include "core/scene/scene_json.h"
 #include "tests/reference/verdict.h"
+#include "tests/tools/degenerate_scenes.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
 #include "tests/tools/random_scene.h"
@@ -123,6 +124,28 @@ std::vector<Case> one_kind_alone() {
 }
 INSTANTIATE_TEST_SUITE_P(Each, TraceAgainstReference, testing::ValuesIn(one_kind_alone()),
                          [](const auto& test_case) { return test_case.param.name; });
+
+// Positions that formulas get wrong, of the shapes that are built.
+class TraceDegenerate : public testing::TestWithParam<tools::Family> {};
+INSTANTIATE_TEST_SUITE_P(Each, TraceDegenerate,
+                         testing::Values(tools::Family::disc_edge_on, tools::Family::disc_axis,
+                                         tools::Family::disc_rim, tools::Family::disc_plane),
+                         [](const auto& family) {
+                             const auto n = static_cast<std::size_t>(family.param);
+                             return std::string(tools::family_words[n]);
+                         });
+
+TEST_P(TraceDegenerate, HitAndMissHoldAndDecidableRaysAreResolved) {
+    Tally tally;
+    for (int n = 0; n < scene_count(2) * 10; ++n) {  // every kernel, both signs
+        const std::uint64_t seed = first_seed() + static_cast<std::uint64_t>(n);
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const tools::DegenerateCase made = degenerate_case(GetParam(), seed);
+        judge(parse_scene(scene_text(made.scene), "scene"), made.rays, 1e-9, tally);
+    }
+    EXPECT_GT(tally.hits, 0);
+    EXPECT_GT(tally.misses, 0);
+}
 
 }  // namespace
 }  // namespace ivory
