@@ -155,7 +155,7 @@ TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
     std::sort(gains.begin(), gains.end());
     EXPECT_GT(pieces, 1000);
     EXPECT_GT(share, 0.02);
-    EXPECT_GT(gains[gains.size() / 2], 1.2);
+    EXPECT_GT(gains[gains.size() / 2], 1.1);
     std::printf("%d places, up to %.3f of a bound; bounds %.1f times closer\n", pieces, share,
                 gains[gains.size() / 2]);
 }

@@ -141,7 +141,7 @@ TEST_P(TraceDegenerate, HitAndMissHoldAndDecidableRaysAreResolved) {
         const std::uint64_t seed = first_seed() + static_cast<std::uint64_t>(n);
         SCOPED_TRACE("seed " + std::to_string(seed));
         const tools::DegenerateCase made = degenerate_case(GetParam(), seed);
-        judge(parse_scene(scene_text(made.scene), "scene"), made.rays, 1e-9, tally);
+        judge(parse_scene(tools::scene_text(made.scene), "scene"), made.rays, 1e-9, tally);
     }
     EXPECT_GT(tally.hits, 0);
     EXPECT_GT(tally.misses, 0);
