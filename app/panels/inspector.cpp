@@ -1,5 +1,6 @@
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -87,14 +88,39 @@ void draw_kernel(ViewerState& state, std::size_t element, const std::string& nam
     const float width = field_width();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
+    // as many in a row as there is room for
+    const auto texts_from = [&](std::size_t first, std::size_t end) {
+        float texts = 0;
+        for (std::size_t i = first; i < end; ++i) texts += ImGui::CalcTextSize(choices[i].label).x;
+        return texts;
+    };
+    const auto row_end = [&](std::size_t first, std::size_t columns) {
+        return std::min(first + columns, choices.size());
+    };
+    std::size_t columns = choices.size();
+    const auto fits = [&] {
+        for (std::size_t first = 0; first < choices.size(); first += columns) {
+            const std::size_t end = row_end(first, columns);
+            const auto count = static_cast<float>(end - first);
+            if (texts_from(first, end) + 2 * px(state, 4) * count > width) return false;
+        }
+        return true;
+    };
+    while (columns > 1 && !fits()) --columns;
+    const std::size_t rows = (choices.size() + columns - 1) / columns;
+    const float all_rows = static_cast<float>(rows) * height;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float rounding = ImGui::GetStyle().FrameRounding;
-    list.AddRectFilled(at, {at.x + width, at.y + height}, packed(colors.field), rounding);
+    list.AddRectFilled(at, {at.x + width, at.y + all_rows}, packed(colors.field), rounding);
 
-    float texts = 0;
-    for (const Choice& choice : choices) texts += ImGui::CalcTextSize(choice.label).x;
-    const float pad = (width - texts) / (2 * static_cast<float>(choices.size()));
-    for (const Choice& choice : choices) {
+    float pad = 0;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const Choice& choice = choices[i];
+        if (i % columns == 0) {
+            const std::size_t end = row_end(i, columns);
+            pad = (width - texts_from(i, end)) / (2 * static_cast<float>(end - i));
+            ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>(i / columns) * height});
+        }
         const ImVec2 text = ImGui::CalcTextSize(choice.label);
         ImGui::PushID(choice.label);
         const bool clicked = ImGui::InvisibleButton("##kernel", {text.x + 2 * pad, height});
@@ -117,7 +143,7 @@ void draw_kernel(ViewerState& state, std::size_t element, const std::string& nam
     }
     const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
     state.widgets.add("element.kernel", WidgetKind::choice,
-                      {whole(at.x), whole(at.y), whole(width), whole(height)});
+                      {whole(at.x), whole(at.y), whole(width), whole(all_rows)});
     ImGui::NewLine();
 }
 
