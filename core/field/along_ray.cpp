@@ -22,14 +22,22 @@ double least_square(const ElementAlongRay& e, const Interval<double>& span, doub
     constexpr int windows = 6;
     // Outside of it, all that is known is s >= cut.
     double least = is_subset(span, where) ? infinity<double> : cut;
-    CircleAlongRay::At left = e.circle.at(where.lo);
-    double t0 = where.lo;
-    for (int k = 1; k <= windows; ++k) {
-        const double t1 = k == windows ? where.hi : where.lo + (where.hi - where.lo) * k / windows;
-        const CircleAlongRay::At right = e.circle.at(t1);
-        if (t1 > t0) least = std::min(least, e.circle.over(t0, t1, left, right).s.lo);
-        left = right;
-        t0 = t1;
+    const auto look = [&](const auto& along) {
+        auto left = along.at(where.lo);
+        double t0 = where.lo;
+        for (int k = 1; k <= windows; ++k) {
+            const double t1 =
+                k == windows ? where.hi : where.lo + (where.hi - where.lo) * k / windows;
+            const auto right = along.at(t1);
+            if (t1 > t0) least = std::min(least, along.over(t0, t1, left, right).s.lo);
+            left = right;
+            t0 = t1;
+        }
+    };
+    if (e.form == ElementAlongRay::Form::circle) {
+        look(e.circle);
+    } else {
+        look(e.taper);
     }
     return least < infinity<double> ? std::max(least, 0.0) : 0;
 }
@@ -42,7 +50,7 @@ void along_ray(const Field& field, std::size_t i, const Vec3d& origin, const Vec
     e.strength = field.strength[i];
     const double beyond = e.strength * kernel_at(e.kernel, cut).hi;
     e.beyond = {std::min(beyond, 0.0), std::max(beyond, 0.0)};
-    const bool fits = with_shape(field.shape[i], [&]<class S>() {
+    const bool fits = with_field_shape(field.shape[i], [&]<class S>() {
         return S::along_ray(field.columns(i), field.width[i], {origin, direction, span, cut}, e);
     });
     if (!fits) {

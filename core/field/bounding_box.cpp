@@ -34,7 +34,7 @@ bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, c
     double sum = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
         if (field.strength[i] < 0) continue;
-        const double q = box_distance(skeletons[i], box, field.width[i]);
+        const double q = box_distance(skeletons[i], box, field.greatest_width_of(i));
         sum += field.strength[i] * kernel_at(field.kernel[i], q * q * (1 - 4 * u)).hi;
         if (sum >= field.threshold) return false;
     }
@@ -86,11 +86,11 @@ double radius_at(double level, double width) {
 
 double reach(const Field& field, std::size_t i, std::size_t positive) {
     const double s = level(field, i, positive);
-    return s < 0 ? -1 : radius_at(s, field.width[i]);
+    return s < 0 ? -1 : radius_at(s, field.greatest_width_of(i));
 }
 
 Box3 skeleton_box(const Field& field, std::size_t i) {
-    return with_shape(field.shape[i], [&]<class S>() { return S::box(field.columns(i)); });
+    return with_field_shape(field.shape[i], [&]<class S>() { return S::box(field.columns(i)); });
 }
 
 namespace {
@@ -99,7 +99,7 @@ namespace {
 // covered by far more than it can cost.
 bool certainly_holds(const Box3& box, const Field& field, std::size_t i, double radius) {
     const Surroundings around =
-        with_shape(field.shape[i], [&]<class S>() { return S::surroundings(field.columns(i)); });
+        with_field_shape(field.shape[i], [&]<class S>() { return S::surroundings(field.columns(i)); });
     const double most = radius + around.radius;
     for (std::size_t k = 0; k < 3; ++k) {
         const double lo = around.box.lo[k], hi = around.box.hi[k];

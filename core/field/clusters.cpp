@@ -27,7 +27,7 @@ std::uint32_t spread_bits(std::uint32_t x) {
 }
 
 Ball ball_of(const Field& field, std::size_t i) {
-    return with_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
+    return with_field_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
 }
 
 // The element relative to its cluster's centre.
@@ -41,7 +41,7 @@ void put_member(const Field& field, std::size_t i, const Vec3d& center, LocalEle
     members.z[i] = narrow(v.z * per_unit);
     members.strength[i] = narrow(field.strength[i] * field.scale);
     members.inverse_square[i] = narrow(field.inverse_square[i] * field.unit * field.unit);
-    with_shape(field.shape[i], [&]<class S>() {
+    with_field_shape(field.shape[i], [&]<class S>() {
         const double m_factor = unit_factor<S::m_power>(field.unit);
         members.mx[i] = narrow(field.mx[i] * m_factor);
         members.my[i] = narrow(field.my[i] * m_factor);
@@ -50,6 +50,10 @@ void put_member(const Field& field, std::size_t i, const Vec3d& center, LocalEle
             std::min(field.parameter[i] * unit_factor<S::parameter_power>(field.unit), 1e30));
     });
     members.length[i] = narrow(field.length[i] * per_unit);
+    if (field.shape[i] == Shape::taper) {
+        members.taper_rate[i] =
+            narrow((field.width_b[i] - field.width_a[i]) * field.inverse_width[i]);
+    }
 }
 
 }  // namespace
@@ -71,7 +75,7 @@ void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
         const Vec3d middle = ball_of(field, i).center;
         box.include({middle, middle});
         (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
-        widest = std::max(widest, field.width[i]);
+        widest = std::max(widest, field.greatest_width_of(i));
     }
     const Vec3d center = 0.5 * box.lo + 0.5 * box.hi;
     double radius = 0;

@@ -31,9 +31,10 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
     M<Tag> smooth = valid;
     V<Tag> inverse = zero, outward = zero;  // 1 / rho, r / rho
     if constexpr (SkeletonOf<shape>::has_kinks) {
-        inverse = LanesOfShape<shape>::inverse_rho(e, s, error);
+        const Turning<Tag> turning = LanesOfShape<shape>::turning(e, s, error, most);
+        inverse = turning.inverse;
+        outward = turning.outward;
         smooth = hn::And(smooth, hn::Ge(inverse, zero));
-        outward = LanesOfShape<shape>::outward(e, inverse);
         // no f'' is known of the others
         const V<Tag> slope = hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
                                      hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),

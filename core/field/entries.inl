@@ -228,7 +228,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         put(hn::Mul(arrivals.place.x, per_unit), hn::Mul(arrivals.place.y, per_unit),
             hn::Mul(arrivals.place.z, per_unit), hn::Mul(square, c(LanesOf<kind>::argument_scale)),
             0);
-        put(e.strength, hn::IfThenZeroElse(kinked, full), zero, zero, 1);
+        V<Tag> taper_rate = zero;
+        if constexpr (tapers<shape>) taper_rate = e.taper_rate;
+        put(e.strength, hn::IfThenZeroElse(kinked, full), taper_rate, zero, 1);
         if constexpr (has_axis<shape>) {
             put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale),
                 parameter, 2);

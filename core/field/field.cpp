@@ -43,11 +43,22 @@ void make_room(Field& field, std::size_t count) {
     field.source.resize(count);
 }
 
+SkeletonColumns columns_of(const Element& element) {
+    if (field_shape_of(element) == Shape::taper) {
+        return TaperedSegment::columns(std::get<SegmentSkeleton>(element.skeleton),
+                                       element.widths.front(), element.widths.back());
+    }
+    return std::visit([](const auto& skeleton) { return skeleton.columns(); }, element.skeleton);
+}
+
 // All that an element says by itself, but for its colour.
 void put(Field& field, std::size_t i, const Element& element) {
-    const auto [a, b, m, radius, length, parameter] =
-        std::visit([](const auto& skeleton) { return skeleton.columns(); }, element.skeleton);
-    field.shape[i] = shape_of_skeleton(element.skeleton);
+    const auto [a, b, m, radius, length, parameter, width_a, width_b] = columns_of(element);
+    field.shape[i] = field_shape_of(element);
+    if (field.shape[i] == Shape::taper) {
+        field.width_a[i] = width_a;
+        field.width_b[i] = width_b;
+    }
     field.kernel[i] = element.kernel;
     field.strength[i] = element.strength;
     field.width[i] = element.width;
@@ -105,6 +116,7 @@ void sum_up(Field& field) {
         field.width.empty() ? 1 : *std::max_element(field.width.begin(), field.width.end());
     field.greatest_size = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
+        field.greatest_width = std::max(field.greatest_width, field.greatest_width_of(i));
         field.greatest_size =
             std::max(field.greatest_size, std::max(field.length[i], field.radius[i]));
     }
@@ -136,7 +148,8 @@ void put_boxes(Field& field, int threads) {
 }
 
 bool same_numbers(const Element& a, const Element& b) {
-    return a.skeleton == b.skeleton && a.strength == b.strength && a.width == b.width;
+    return a.skeleton == b.skeleton && a.strength == b.strength && a.width == b.width &&
+           a.widths == b.widths;
 }
 
 }  // namespace
@@ -149,11 +162,17 @@ Field compile(const Scene& scene, int threads) {
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         const Element& element = scene.elements[i];
         if (!element.visible) continue;
-        const Shape shape = shape_of_skeleton(element.skeleton);
+        const Shape shape = field_shape_of(element);
         groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
         ++visible;
     }
     make_room(field, visible);
+    const bool tapers = std::any_of(scene.elements.begin(), scene.elements.end(),
+                                    [](const Element& e) { return !e.widths.empty(); });
+    if (tapers) {
+        field.width_a.resize(visible);
+        field.width_b.resize(visible);
+    }
     std::size_t count = 0;
     for (std::size_t group = 0; group < field_groups; ++group) {
         field.first[group] = static_cast<std::uint32_t>(count);
@@ -186,7 +205,7 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
         const Element &old = before.elements[i], &element = after.elements[i];
         if (old.visible != element.visible) return Refit::impossible;
         if (!element.visible) continue;
-        if (old.kernel != element.kernel || old.skeleton.index() != element.skeleton.index()) {
+        if (old.kernel != element.kernel || field_shape_of(old) != field_shape_of(element)) {
             return Refit::impossible;
         }
         if (same_numbers(old, element) && old.color == element.color) continue;

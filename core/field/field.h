@@ -2,6 +2,7 @@
 // F_i(p) = b_i k_i(d_i(p) / w_i); kernels k in core/kernel, distances d in core/shape.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -40,6 +41,7 @@ struct Field {
     std::vector<double> ax, ay, az;  // SkeletonColumns::a, and so on
     std::vector<double> bx, by, bz;
     std::vector<double> radius;
+    std::vector<double> width_a, width_b;  // of tapers; none where there are none
     std::vector<Color> color;           // linear RGB
     std::vector<std::uint32_t> source;  // index in Scene::elements
     GroupStarts first{};
@@ -69,7 +71,16 @@ struct Field {
     [[nodiscard]] Vec3d a(std::size_t i) const { return {ax[i], ay[i], az[i]}; }
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
     [[nodiscard]] SkeletonColumns columns(std::size_t i) const {
-        return {a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], parameter[i]};
+        SkeletonColumns c{a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], parameter[i]};
+        if (shape[i] == Shape::taper) {
+            c.width_a = width_a[i];
+            c.width_b = width_b[i];
+        }
+        return c;
+    }
+    // Of a taper `width` is the least.
+    [[nodiscard]] double greatest_width_of(std::size_t i) const {
+        return shape[i] == Shape::taper ? std::max(width_a[i], width_b[i]) : width[i];
     }
 };
 

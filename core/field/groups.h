@@ -11,7 +11,7 @@
 
 namespace ivory {
 
-inline constexpr std::size_t field_groups = shape_count * kernel_count;
+inline constexpr std::size_t field_groups = field_shape_count * kernel_count;
 
 [[nodiscard]] constexpr std::size_t group_of(Shape shape, KernelKind kernel) {
     return static_cast<std::size_t>(shape) * kernel_count + static_cast<std::size_t>(kernel);

@@ -88,6 +88,12 @@ Terms circle(const ElementAlongRay& e, double t0, double t1) {
     return composed(e.kernel, a.s, a.ds, b.s, range.s, range.ds, range.dds);
 }
 
+Terms taper(const ElementAlongRay& e, double t0, double t1) {
+    const TaperAlongRay::At a = e.taper.at(t0), b = e.taper.at(t1);
+    const TaperAlongRay::Over range = e.taper.over(t0, t1, a, b);
+    return composed(e.kernel, a.s, a.ds, b.s, range.s, range.ds, range.dds);
+}
+
 Terms unbounded() {
     const Interval<double> k{0.0, 1.0};
     const Interval<double> all = Interval<double>::entire();
@@ -100,6 +106,8 @@ Terms element_over(const ElementAlongRay& e, double t0, double t1) {
             return squares(e, t0, t1);
         case ElementAlongRay::Form::circle:
             return circle(e, t0, t1);
+        case ElementAlongRay::Form::taper:
+            return taper(e, t0, t1);
         case ElementAlongRay::Form::unbounded:
             break;
     }
@@ -108,8 +116,9 @@ Terms element_over(const ElementAlongRay& e, double t0, double t1) {
 
 Interval<double> element_at(const ElementAlongRay& e, double t) {
     if (e.form == ElementAlongRay::Form::unbounded) return {0.0, 1.0};
-    if (e.form == ElementAlongRay::Form::circle) {
-        const Interval<double> s = e.circle.at(t).s;
+    if (e.form != ElementAlongRay::Form::squares) {
+        const bool is_circle = e.form == ElementAlongRay::Form::circle;
+        const Interval<double> s = is_circle ? e.circle.at(t).s : e.taper.at(t).s;
         return with_kernel(e.kernel, [&]<class K>() { return over_thin<K>(s); });
     }
     Interval<double> k = Interval<double>::empty_set();

@@ -266,6 +266,9 @@ HWY_INLINE void bound_local_lanes(const LocalElements& candidates, std::size_t f
         put(e.m.y, kept->my);
         put(e.m.z, kept->mz);
         put(e.parameter, kept->parameter);
+        if constexpr (tapers<shape>) {
+            put(e.taper_rate, kept->taper_rate);
+        }
         if constexpr (has_length<shape>) put(e.size, kept->length);
         put(hn::Mul(hn::Mul(square_of(range.far), e.inverse_square), widened), kept->most);
     }

@@ -89,6 +89,10 @@ void near_group(const Field& field, const ActiveElements& active, std::size_t fi
                                 constant(unit_factor<S::parameter_power>(unit))),
                         constant(1e30)),
                 near.parameter);
+            if constexpr (tapers<shape>) {
+                const V<D> per_width = column(field.inverse_width), width_a = column(field.width_a);
+                put(hn::Mul(hn::Sub(column(field.width_b), width_a), per_width), near.taper_rate);
+            }
             if constexpr (has_length<shape>) {
                 put(hn::Mul(column(field.length), constant(unit_factor<1>(unit))), near.length);
             }

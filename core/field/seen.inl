@@ -23,6 +23,9 @@ inline constexpr bool has_axis = SkeletonOf<shape>::has_axis;
 template <Shape shape>
 inline constexpr bool has_length = SkeletonOf<shape>::m_power == 1;
 
+template <Shape shape>
+inline constexpr bool tapers = has_taper<SkeletonOf<shape>>;
+
 HWY_INLINE Reach<double> reach_of(const Stretch& s) {
     return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
 }
@@ -71,6 +74,10 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
     }
     e.strength = hn::Mul(column(field.strength), constant(scale));
     e.inverse_square = column(field.inverse_square);
+    if constexpr (tapers<shape>) {
+        const V<D> per_width = column(field.inverse_width), width_a = column(field.width_a);
+        e.taper_rate = hn::Mul(hn::Sub(column(field.width_b), width_a), per_width);
+    }
     e.finish();
     return e;
 }
@@ -95,6 +102,9 @@ HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<floa
     }
     e.strength = column(near.strength);
     e.inverse_square = column(near.inverse_square);
+    if constexpr (tapers<shape>) {
+        e.taper_rate = column(near.taper_rate);
+    }
     e.finish();
     return e;
 }

@@ -10,7 +10,7 @@ namespace {
 Vec3d scaled(const Vec3d& v, double width) { return {v.x / width, v.y / width, v.z / width}; }
 
 Nearest nearest(const Field& field, std::size_t i, const Vec3d& from_a) {
-    return with_shape(field.shape[i], [&]<class S>() {
+    return with_field_shape(field.shape[i], [&]<class S>() {
         return S::nearest(field.columns(i), from_a, field.width[i]);
     });
 }

@@ -252,7 +252,7 @@ class Search {
 
     // How far the skeleton of an element reaches along a normal, about.
     [[nodiscard]] Vec3d farthest(std::size_t i, const Vec3d& normal) const {
-        return with_shape(field_.shape[i], [&]<class S>() {
+        return with_field_shape(field_.shape[i], [&]<class S>() {
             return S::farthest(field_.columns(i), middle_, normal);
         });
     }
@@ -582,7 +582,7 @@ class Search {
         const double b = field_.strength[i], per_width = field_.inverse_width[i];
         const Vec3d from = (middle_ - field_.a(i)) + cell.center;
         double nearest = 0, farthest = 0, s = 0;
-        if (!with_shape(field_.shape[i], []<class S>() { return S::has_axis; })) {
+        if (!with_field_shape(field_.shape[i], []<class S>() { return S::has_axis; })) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const double off = std::abs(from[k]);
                 const double beyond = std::max(off - cell.half, 0.0);

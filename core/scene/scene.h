@@ -22,10 +22,17 @@ struct Element {
     Color color{0.8, 0.8, 0.8};
     KernelKind kernel = KernelKind::blinn;
     double strength = 1;  // b, finite, not 0; negative carves
-    double width = 1;     // w > 0, divides the distance
+    double width = 1;     // w > 0, divides the distance; of a list the least
+    // Of a segment whose width tapers: at a and at b, each > 0. Empty: `width` all along.
+    std::vector<double> widths{};
     bool visible = true;  // false: not part of the field
     friend bool operator==(const Element&, const Element&) = default;
 };
+
+// What a field makes of it.
+[[nodiscard]] inline Shape field_shape_of(const Element& element) {
+    return element.widths.empty() ? shape_of_skeleton(element.skeleton) : Shape::taper;
+}
 
 struct Camera {
     Vec3d position;

@@ -239,6 +239,12 @@ std::optional<SceneFault> find_fault(const Element& element) {
                      "finite and not 0 (below 0 it carves; \"visible\": false leaves the element "
                      "out)");
     }
+    for (std::size_t i = 0; i < element.widths.size(); ++i) {
+        if (!(element.widths[i] > 0 && std::isfinite(element.widths[i]))) {
+            return wrong(pointer_to("width", i), "the width", element.widths[i],
+                         "greater than 0, and finite");
+        }
+    }
     if (!(element.width > 0 && std::isfinite(element.width))) {
         return wrong("/width", "the width", element.width, "greater than 0, and finite");
     }

@@ -248,6 +248,22 @@ void read(const Node& node, Light& light) {
     }
 }
 
+// One for all of it, or a list of one for each of so many places.
+void read_widths(const Node& node, std::size_t places, Element& element) {
+    const std::string expected = "a number or a list of " + std::to_string(places) + " numbers";
+    if (node.value.kind() != JsonKind::list) {
+        node.must_be(JsonKind::number, expected);
+        element.width = node.value.number();
+        return;
+    }
+    if (node.value.items().size() != places) throw node.wrong_kind(expected);
+    std::size_t i = 0;
+    for (const JsonValue item : node.value.items()) {
+        read(Node{node.reading, item, &node, {}, i++}, element.widths.emplace_back());
+    }
+    element.width = *std::min_element(element.widths.begin(), element.widths.end());
+}
+
 template <class S>
 void read_element(const Node& node, Element& element) {
     const ObjectFormat format{word_with_article<S>, keys_of_element<S>, skeleton_keys<S>};
@@ -259,7 +275,11 @@ void read_element(const Node& node, Element& element) {
     read_if_there(members, "color", element.color);
     read_if_there(members, "kernel", element.kernel);
     read_if_there(members, "strength", element.strength);
-    read_if_there(members, "width", element.width);
+    if constexpr (may_taper<S>) {
+        if (const auto width = members.optional("width")) read_widths(*width, 2, element);
+    } else {
+        read_if_there(members, "width", element.width);
+    }
     read_if_there(members, "visible", element.visible);
 }
 

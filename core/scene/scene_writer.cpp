@@ -40,6 +40,15 @@ class Members {
         text_ += "]";
         return *this;
     }
+    Members& add(std::string_view key, const std::vector<double>& numbers) {
+        add(key);
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            text_ += i == 0 ? "[" : ", ";
+            append_number(text_, numbers[i]);
+        }
+        text_ += "]";
+        return *this;
+    }
     Members& add_word(std::string_view key, std::string_view word) {
         add(key).append("\"").append(word).append("\"");
         return *this;
@@ -82,7 +91,11 @@ void append_members(Members members, const Element& element) {
         members.add_word("kernel", kernel_word(element.kernel));
     }
     if (element.strength != defaults.strength) members.add("strength", element.strength);
-    if (element.width != defaults.width) members.add("width", element.width);
+    if (!element.widths.empty()) {
+        members.add("width", element.widths);
+    } else if (element.width != defaults.width) {
+        members.add("width", element.width);
+    }
     if (!element.visible) members.add("visible") += "false";
 }
 

@@ -61,11 +61,49 @@ struct CircleAlongRay {
     [[nodiscard]] Over over_filled(double t0, double t1, const At& at0, const At& at1) const;
 };
 
+// A segment whose width tapers (core/shape/taper.h), in intervals throughout.
+struct TaperAlongRay {
+    using Vector = Vec3<Interval<double>>;
+
+    // The foot: where it may be.
+    struct Foot {
+        bool at_a = false, at_b = false;
+        Interval<double> between = Interval<double>::empty_set();  // of u
+    };
+    struct At {
+        Vector from_a;  // a -> p(t)
+        Interval<double> wanted, rises;  // of (1): alpha w_a + A d, |M|^2 w_a + alpha d
+        Interval<double> s, ds;
+    };
+    struct Over {
+        Interval<double> s, ds, dds;
+    };
+
+    // False: numbers too large or too small.
+    [[nodiscard]] bool see(const Vec3d& from, const Vec3d& along, const Vec3d& end_a,
+                           const Vec3d& end_b, double at_a, double at_b,
+                           const Interval<double>& span);
+    [[nodiscard]] At at(double t) const;
+    // Ranges over [t0, t1], t0 < t1, from the values at its ends.
+    [[nodiscard]] Over over(double t0, double t1, const At& at0, const At& at1) const;
+
+  private:
+    [[nodiscard]] Foot foot(const Interval<double>& wanted, const Interval<double>& rises) const;
+    [[nodiscard]] Interval<double> slope(const Foot& foot, const Interval<double>& along) const;
+
+    Vec3d origin, direction, a;
+    Vector m;                                 // b - a
+    Interval<double> width_a, width_b, more;  // more: width_b - width_a
+    double least_width = 1;
+    Interval<double> speed_square, along, length_square;  // |d|^2, M.d, |M|^2
+};
+
 // One skeleton seen from one ray, for t in a span.
 struct SkeletonAlongRay {
     enum class Form : unsigned char {
         squares,   // pieces[0 .. piece_count): s is the square of the piece that t lies in
         circle,    // circle, or a disc
+        taper,     // taper
         unbounded  // numbers too large or too small for the lemma: 0 <= k <= 1 is all that is known
     };
     Form form = Form::unbounded;
@@ -74,6 +112,7 @@ struct SkeletonAlongRay {
     Interval<double> active = Interval<double>::entire();
     std::array<Piece, 3> pieces;
     CircleAlongRay circle;
+    TaperAlongRay taper;
 };
 
 // The ray that a skeleton is seen from.

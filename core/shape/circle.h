@@ -237,11 +237,10 @@ struct ShapeLanes<CircleSkeleton> {
         return {least, least, most, hn::Zero(Tag()), false};
     }
 
-    // s'' w^2 / 2 = 1 - r rho'' lies in 1 - r / rho .. 1. Returns an upper bound of 1 / rho, below 0
-    // where rho may be too small for one.
+    // s'' w^2 / 2 = 1 - r rho'' lies in 1 - r / rho .. 1. `inverse` is an upper bound of 1 / rho.
     template <class Tag>
-    static HWY_INLINE V<Tag> inverse_rho(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
-                                         V<Tag> error) {
+    static HWY_INLINE Turning<Tag> turning(const Seen<Tag, shape>& e,
+                                           const Reach<hn::TFromD<Tag>>& s, V<Tag> error, V<Tag>) {
         using Real = hn::TFromD<Tag>;
         using Margin = Margins<Real>;
         const Tag d;
@@ -256,15 +255,11 @@ struct ShapeLanes<CircleSkeleton> {
         const M<Tag> bounded = hn::And(hn::Gt(rho, zero), hn::Lt(hn::Mul(e.parameter, unrounded),
                                                                  constant(d, greatest_outward)));
         const M<Tag> is_point = hn::Eq(e.parameter, zero);
-        const V<Tag> inverse =
-            hn::IfThenElse(bounded, hn::Mul(unrounded, hn::Set(d, Margin::more)), constant(d, -1));
-        return hn::IfThenZeroElse(is_point, inverse);
-    }
-    // How much of s'' that takes away, at most.
-    template <class Tag>
-    static HWY_INLINE V<Tag> outward(const Seen<Tag, shape>& e, V<Tag> inverse) {
-        return hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)),
-                       hn::Set(Tag(), Margins<hn::TFromD<Tag>>::more));
+        const V<Tag> inverse = hn::IfThenZeroElse(
+            is_point,
+            hn::IfThenElse(bounded, hn::Mul(unrounded, hn::Set(d, Margin::more)), constant(d, -1)));
+        return {inverse, hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)),
+                                 hn::Set(d, Margin::more))};
     }
 
     // The axis moves `away` by 10 u |p - c| more at the most, as a segment's foot does; rho and

@@ -33,6 +33,7 @@ struct RaySkeleton {
     Linear along;            // lambda of a segment, h of a circle or a disc
     Vec3<Span> axis;         // M of a segment
     Span radius;             // of a circle, of a disc
+    Span taper_start, taper_rate;  // of a taper: w_a and w_b - w_a, in least widths
 };
 
 template <class Number>
@@ -41,6 +42,20 @@ template <class Number>
 }
 
 using Vector = Vec3<Span>;
+
+// s of a taper, and its derivative by t, over an interval of t: the foot of core/shape/taper.h (1)
+// kept between the ends, and where it may pass one, or may not be one, the cases hulled.
+struct SquareAndSlope {
+    Span square, slope;
+};
+[[nodiscard]] SquareAndSlope taper_over(const RaySkeleton& e, const Span& t);
+
+// As each number type has it.
+template <class Number>
+[[nodiscard]] Number taper_square(const RaySkeleton& e, const Number& t) {
+    const SquareAndSlope s = taper_over(e, range(t));
+    return enclosed(t, s.square, s.slope);
+}
 
 inline Vector minus(const Vector& a, const Vector& b) {
     return {quick::sub(a.x, b.x), quick::sub(a.y, b.y), quick::sub(a.z, b.z)};

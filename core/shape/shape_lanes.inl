@@ -85,6 +85,7 @@ struct Seen {
     V<Tag> magnitude;       // at least |v| + size
     V<Tag> strength;        // scaled
     V<Tag> inverse_square;  // 1 / w^2
+    V<Tag> taper_rate;  // of tapers: how much more the width is at m, in least widths
 
     // Once all but m, parameter and size, unless it has an axis, and magnitude are set.
     HWY_INLINE void finish() {
@@ -198,9 +199,17 @@ struct Entering {
 //     errors(d, entering, seen, eta, v_length, inverse)
 //         what `away` is off by, and what its direction adds, from what p - c is; `inverse`: of rho
 // and, where it has kinks,
-//     is_defined, inverse_rho, outward
+//     turning(seen, reach, error, most)
+//     is_defined(d, entry, inverse_square, p)     the direction of `away`
 template <class S>
 struct ShapeLanes;
+
+// Of a skeleton with kinks, on a stretch: s'' w^2 / 2 >= 1 - outward for a ray of speed 1, unless
+// `inverse` is below 0: then there may be a kink. Otherwise that is what `errors` wants to know.
+template <class Tag>
+struct Turning {
+    V<Tag> inverse, outward;
+};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -231,7 +240,7 @@ HWY_INLINE void for_shapes_and_kernels(const Visit& visit, std::index_sequence<s
 // Calls visit.operator()<shape, kind>() for all of them, in the order of their groups.
 template <class Visit>
 HWY_INLINE void for_shapes_and_kernels(const Visit& visit) {
-    for_shapes_and_kernels(visit, std::make_index_sequence<shape_count>());
+    for_shapes_and_kernels(visit, std::make_index_sequence<field_shape_count>());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/shape/disc.h"
 #include "core/shape/point.h"
 #include "core/shape/segment.h"
+#include "core/shape/taper.h"
 
 #ifndef IVORY_CORE_SHAPE_SHAPES_H
 #define IVORY_CORE_SHAPE_SHAPES_H
@@ -21,13 +22,17 @@
 
 namespace ivory {
 
-enum class Shape : std::uint8_t { point, segment, circle, disc };
+enum class Shape : std::uint8_t { point, segment, circle, disc, taper };
 using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton>;
+// What fields are made of: those, and what becomes of a list of widths.
+using FieldShapes =
+    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, TaperedSegment>;
 
 static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
 static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
 static_assert(index_in<CircleSkeleton, Shapes> == static_cast<std::size_t>(Shape::circle));
 static_assert(index_in<DiscSkeleton, Shapes> == static_cast<std::size_t>(Shape::disc));
+static_assert(index_in<TaperedSegment, FieldShapes> == static_cast<std::size_t>(Shape::taper));
 
 // The one alternative that an element has; its index is the Shape.
 using Skeleton = Shapes::Into<std::variant>;
@@ -36,20 +41,14 @@ using Skeleton = Shapes::Into<std::variant>;
 // and natural.h; the quick forms for SIMD, which are at the end of the same file, are asked for in
 // core/shape/shape_lanes.inl.
 template <class S>
-concept SkeletonShape = std::equality_comparable<S> &&
-    requires(const S& s, const SkeletonColumns& columns, const SeenFrom& ray,
+concept FieldShape =
+    requires(const SkeletonColumns& columns, const SeenFrom& ray,
              SkeletonAlongRay& along, const natural::Span& span, const natural::Vector& v,
              natural::RaySkeleton& on_ray, double width) {
-    { S::word } -> std::convertible_to<std::string_view>;      // in scene files
-    { S::label } -> std::convertible_to<std::string_view>;     // in the viewer
-    { S::distance } -> std::convertible_to<std::string_view>;  // the formula of d
-    std::tuple_size<decltype(S::members())>::value;
     { S::has_kinks } -> std::convertible_to<bool>;
     { S::has_axis } -> std::convertible_to<bool>;
     { S::m_power } -> std::convertible_to<int>;
     { S::parameter_power } -> std::convertible_to<int>;
-    { s.middle() } -> std::same_as<Vec3d>;
-    { s.columns() } -> std::same_as<SkeletonColumns>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
     { S::box(columns) } -> std::same_as<Box3>;
     { S::ball(columns) } -> std::same_as<Ball>;
@@ -59,18 +58,41 @@ concept SkeletonShape = std::equality_comparable<S> &&
     S::see(columns, span, v, v, v, on_ray);
 };
 
+template <class S>
+concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires(const S& s) {
+    { S::word } -> std::convertible_to<std::string_view>;      // in scene files
+    { S::label } -> std::convertible_to<std::string_view>;     // in the viewer
+    { S::distance } -> std::convertible_to<std::string_view>;  // the formula of d
+    std::tuple_size<decltype(S::members())>::value;
+    { s.middle() } -> std::same_as<Vec3d>;
+    { s.columns() } -> std::same_as<SkeletonColumns>;
+};
+
 inline constexpr std::size_t shape_count = Shapes::size;
+inline constexpr std::size_t field_shape_count = FieldShapes::size;
 
 template <class S>
-inline constexpr Shape shape_of = static_cast<Shape>(index_in<S, Shapes>);
+inline constexpr Shape shape_of = static_cast<Shape>(index_in<S, FieldShapes>);
 template <Shape shape>
-using SkeletonOf = TypeAt<static_cast<std::size_t>(shape), Shapes>;
+using SkeletonOf = TypeAt<static_cast<std::size_t>(shape), FieldShapes>;
 
 // visit.operator()<S>() of that shape.
 template <class Visit>
 constexpr decltype(auto) with_shape(Shape shape, const Visit& visit) {
     return with_type(Shapes{}, static_cast<std::size_t>(shape), visit);
 }
+
+// The same of what fields are made of.
+template <class Visit>
+constexpr decltype(auto) with_field_shape(Shape shape, const Visit& visit) {
+    return with_type(FieldShapes{}, static_cast<std::size_t>(shape), visit);
+}
+
+// Whether the width of S may be a list.
+template <class S>
+inline constexpr bool may_taper = std::is_same_v<S, SegmentSkeleton>;
+template <class S>
+inline constexpr bool has_taper = std::is_same_v<S, TaperedSegment>;
 
 // Calls visit(member) for each member of S, in order.
 template <class S, class Visit>
@@ -80,7 +102,7 @@ constexpr void for_members(const Visit& visit) {
 
 // "point", ..., in the order of `Shape`: the words of the file format.
 inline constexpr auto shape_words = []<class... S>(TypeList<S...>) {
-    static_assert((SkeletonShape<S> && ...));
+    static_assert((SkeletonShape<S> && ...) && FieldShape<TaperedSegment>);
     return std::array<std::string_view, sizeof...(S)>{S::word...};
 }(Shapes{});
 

@@ -46,6 +46,7 @@ struct SkeletonColumns {
     double radius = 0;     // as written
     double length = 0;     // of m, where it has one that matters
     double parameter = 0;  // what else the quick bounds need
+    double width_a = 0, width_b = 0;  // of tapers, as written: at a and at b
 };
 
 // What a number of that power of lengths has to be multiplied by to be in units.

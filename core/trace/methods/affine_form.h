@@ -103,6 +103,10 @@ inline Affine on_line(double slope, const Span& offset, const Affine& a) {
 // max(x, 0) is convex: below the chord's ends, above its corner.
 [[nodiscard]] Affine at_least_0(const Affine& a);
 
+inline Affine enclosed(const Affine&, const Span& value, const Span&) {
+    return affine_detail::rounded(midpoint(value), 0, radius(value), mag(value));
+}
+
 inline Affine any_kernel(const Affine&) { return {0.5, 0, 0.5 * (1 + 4 * affine_detail::u)}; }
 
 // Where the foot passes an end of the segment, |v - lambda M|^2 with lambda clamped to [0, 1].

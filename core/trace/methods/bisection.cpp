@@ -17,7 +17,7 @@ using natural::RayElement;
 // The distance as the paper prints it.
 Range printed_square(const RayElement& e, const Range& t) {
     if (e.collapsed) return square(e.from, t);
-    return with_shape(e.shape, [&]<class S>() { return S::square_as_printed(e, t); });
+    return with_field_shape(e.shape, [&]<class S>() { return S::square_as_printed(e, t); });
 }
 
 // The sum of squares of intervals that know nothing of each other, as the paper has it, with the ray

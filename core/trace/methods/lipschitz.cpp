@@ -22,14 +22,14 @@ double lipschitz_bound(const Field& field, const ElementList& list, const Scaled
     double sum = 0;
     for (const std::uint32_t i : list.elements) {
         const Ball ball =
-            with_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
+            with_field_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
         const Vec3d away = ball.center - ray.origin;
         const Vec3d moment = cross(away, ray.direction);
         // Each component of the cross product errs by less than 4 u |away| |direction|.
         const double least = std::sqrt(dot(moment, moment)) * (1 - 8 * u) -
                              16 * u * one_norm(away) * one_norm(ray.direction);
         const double distance = least / speed * (1 - 8 * u) - ball.radius * (1 + 4 * u);
-        const double q = distance > 0 ? distance / field.width[i] * (1 - 8 * u) : 0;
+        const double q = distance > 0 ? distance / field.greatest_width_of(i) * (1 - 8 * u) : 0;
         const double strength = std::ldexp(std::abs(field.strength[i]), -exponent);
         sum += strength * steepest_beyond(field.kernel[i], q) / field.width[i] + 1e-300;
     }

@@ -28,7 +28,7 @@ void RayField::build(const Field& field, const ElementList& list, const Ray& ray
         const Vector rate = times(scale, direction);
         const Vector start = times(scale, minus(origin, vector(field.a(i))));
         e.from = moving(start, rate);
-        with_shape(e.shape,
+        with_field_shape(e.shape,
                    [&]<class S>() { S::see(field.columns(i), scale, origin, start, rate, e); });
     }
 }

@@ -6,8 +6,9 @@
 // shape's file says, in units of the element's width; then f = sum of b k(s) - T.
 //
 // A Number has: linear(start, rate, t), sum and difference, sqr, sqrt, at_least_0, scaled by an
-// interval, kernel(kind, s), any_kernel (any k in [0, 1], any slope), range(x), and, where hulling the
-// cases of a clamped foot is not the best it can do, segment_square.
+// interval, kernel(kind, s), any_kernel (any k in [0, 1], any slope), enclosed (what is known of
+// values and slopes over t alone), range(x), and, where hulling the cases of a clamped foot is not the
+// best it can do, segment_square.
 #pragma once
 
 #include <cstddef>
@@ -61,7 +62,7 @@ template <class Number>
 template <class Number>
 [[nodiscard]] Number square(const RayElement& e, const Number& t) {
     if (e.collapsed) return square(e.from, t);
-    return with_shape(e.shape, [&]<class S>() { return S::square(e, t); });
+    return with_field_shape(e.shape, [&]<class S>() { return S::square(e, t); });
 }
 
 // f over t.

@@ -26,6 +26,7 @@ inline Plain hull(Plain, Plain b) { return b; }
 inline Span range(Plain a) { return Span(a.x); }
 inline Plain times(const Span& s, Plain a) { return {s.lo * a.x}; }
 inline Plain any_kernel(Plain) { return {0.0}; }
+inline Plain enclosed(Plain, const Span& value, const Span&) { return {midpoint(value)}; }
 inline Plain kernel(KernelKind kind, Plain s) {
     return {with_kernel(kind, [&]<class K>() { return K::plain(s.x); })};
 }
@@ -67,6 +68,7 @@ inline Range hull(const Range& a, const Range& b) { return {hull(a.x, b.x)}; }
 inline Span range(const Range& a) { return a.x; }
 inline Range times(const Span& s, const Range& a) { return {multiple(s, a.x)}; }
 inline Range any_kernel(const Range&) { return {{0.0, 1.0}}; }
+inline Range enclosed(const Range&, const Span& value, const Span&) { return {value}; }
 inline Range kernel(KernelKind kind, const Range& s) { return {kernel_over(kind, s.x)}; }
 
 // Values and derivatives by t over an interval of t: forward differentiation of the same formulas.
@@ -103,6 +105,7 @@ inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.
 inline Span range(const Dual& a) { return a.x; }
 inline Dual times(const Span& s, const Dual& a) { return {multiple(s, a.x), multiple(s, a.slope)}; }
 inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }
+inline Dual enclosed(const Dual&, const Span& value, const Span& slope) { return {value, slope}; }
 inline Dual kernel(KernelKind kind, const Dual& s) {
     return with_kernel(kind, [&]<class K>() -> Dual {
         const Span k = kernel_over<K>(s.x);

@@ -1,0 +1,199 @@
+#include "core/shape/taper.h"
+
+namespace ivory {
+namespace {
+
+using I = Interval<double>;
+using Vector = TaperAlongRay::Vector;
+
+I inner(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+I square(const Vector& a) { return sqr(a.x) + sqr(a.y) + sqr(a.z); }
+Vector less_share(const Vector& v, const Vector& m, const I& u) {
+    return {v.x - u * m.x, v.y - u * m.y, v.z - u * m.z};
+}
+
+double one_norm(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+constexpr double u_round = unit_roundoff;
+
+}  // namespace
+
+bool TaperAlongRay::see(const Vec3d& from, const Vec3d& heading, const Vec3d& end_a,
+                        const Vec3d& end_b, double at_a, double at_b, const I& span) {
+    origin = from;
+    direction = heading;
+    a = end_a;
+    m = {I(end_b.x) - I(end_a.x), I(end_b.y) - I(end_a.y), I(end_b.z) - I(end_a.z)};
+    width_a = I(at_a);
+    width_b = I(at_b);
+    more = width_b - width_a;
+    least_width = std::min(at_a, at_b);
+    const Vector d{I(heading.x), I(heading.y), I(heading.z)};
+    speed_square = square(d);
+    along = inner(m, d);
+    length_square = square(m);
+    // No product of four of these leaves the range of doubles.
+    const double most = std::max({one_norm(from), one_norm(end_a), one_norm(end_b), mag(span) * 8,
+                                  at_a, at_b});
+    return most < 1e60 && least_width > 1e-60;
+}
+
+TaperAlongRay::Foot TaperAlongRay::foot(const I& wanted, const I& rises) const {
+    // psi of (1) at both ends; it is linear between.
+    const I at_start = -wanted, at_end = rises - wanted;
+    if (at_start.lo >= 0 && at_end.lo >= 0) return {.at_a = true};
+    if (at_start.hi <= 0 && at_end.hi <= 0) return {.at_b = true};
+    if (!(rises.lo > 0)) return {true, true, I(0.0, 1.0)};
+    const I u = wanted / rises;
+    return {u.lo <= 0, u.hi >= 1, intersection(u, I(0.0, 1.0))};
+}
+
+// 2 (p - c(u)).d / w(u)^2, `inward` = (p - a).d.
+I TaperAlongRay::slope(const Foot& foot, const I& inward) const {
+    I slope = I::empty_set();
+    if (foot.at_a) slope = hull(slope, I(2.0) * inward / sqr(width_a));
+    if (foot.at_b) slope = hull(slope, I(2.0) * (inward - along) / sqr(width_b));
+    if (!is_empty(foot.between)) {
+        const I width = width_a + foot.between * more;
+        slope = hull(slope, I(2.0) * (inward - foot.between * along) / sqr(width));
+    }
+    return slope;
+}
+
+TaperAlongRay::At TaperAlongRay::at(double t) const {
+    At at;
+    const double far = 16 * u_round * u_round *
+                           (one_norm(origin) + one_norm(a) + std::abs(t) * one_norm(direction)) +
+                       1e-290;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double x = offset(origin[k], a[k], t, direction[k]);
+        const double error = 2 * u_round * std::abs(x) + far;
+        at.from_a[k] = {x - error, x + error};
+    }
+    const I alpha = inner(at.from_a, m), reach = square(at.from_a);
+    at.wanted = alpha * width_a + reach * more;
+    at.rises = length_square * width_a + alpha * more;
+
+    // Any u gives an upper bound. With gamma the derivative of |p - c(u)| - q w(u) there, no q is
+    // below this one by more than what gamma could gain towards either end, over the least width:
+    // core/shape/taper.h.
+    const Foot where = foot(at.wanted, at.rises);
+    double u = where.at_b ? 1 : 0;
+    if (!is_empty(where.between)) u = std::min(std::max(midpoint(where.between), 0.0), 1.0);
+    if (where.at_a && where.at_b) u = width_a.lo >= width_b.lo ? 0 : 1;
+    const Vector from = less_share(at.from_a, m, I(u));
+    const I width = width_a + I(u) * more, away = sqrt(square(from)), q = away / width;
+    at.s = sqr(q);
+    double least = 0;
+    if (away.lo > 0) {
+        const I gamma = -(inner(from, m) / away) - q * more;
+        const double gain = std::max({-gamma.lo * (1 - u), gamma.hi * u, 0.0});
+        least = sub_down(q.lo, mul_up(gain / least_width, 1 + 8 * u_round));
+    }
+    at.s.lo = least > 0 ? std::max(mul_down(least, least), 0.0) : 0;
+
+    const Vector d{I(direction.x), I(direction.y), I(direction.z)};
+    at.ds = slope(where, inner(at.from_a, d));
+    return at;
+}
+
+TaperAlongRay::Over TaperAlongRay::over(double t0, double t1, const At& at0, const At& at1) const {
+    const I elapsed{0.0, sub_up(t1, t0)};
+    // Both are at most quadratic in t, with second derivatives 2 |d|^2 more and 0.
+    const I sag = I(0.25) * sqr(I(elapsed.hi)) * speed_square * more;
+    const double sags = mag(sag);
+    const I wanted = hull(at0.wanted, at1.wanted) + I(-sags, sags);
+    const I rises = hull(at0.rises, at1.rises);
+    const Vector d{I(direction.x), I(direction.y), I(direction.z)};
+    const I inward = hull(inner(at0.from_a, d), inner(at1.from_a, d));
+    const Foot where = foot(wanted, rises);
+
+    Over range;
+    range.dds = I::empty_set();
+    const I twice = I(2.0) * speed_square;
+    if (where.at_a) range.dds = hull(range.dds, twice / sqr(width_a));
+    if (where.at_b) range.dds = hull(range.dds, twice / sqr(width_b));
+    if (!is_empty(where.between)) {
+        const I width = width_a + where.between * more;
+        I bends = twice / sqr(width);
+        if (rises.lo > 0) {
+            const I turn = along + I(2.0) * (inward - where.between * along) * more / width;
+            bends = bends - I(2.0) * sqr(turn) / (width * rises);
+        } else {
+            bends.lo = -infinity<double>;
+        }
+        range.dds = hull(range.dds, bends);
+    }
+    // s' passes continuously from case to case, but where the foot leaps from end to end.
+    if (!(rises.lo > 0) && where.at_a && where.at_b) range.dds.lo = -infinity<double>;
+
+    range.ds = slope(where, inward);
+    if (range.dds.lo > -infinity<double>) {
+        const I gain = range.dds * elapsed;
+        range.ds = intersection(range.ds, intersection(at0.ds + gain, at1.ds - gain));
+    }
+    if (is_empty(range.ds)) range.ds = hull(at0.ds, at1.ds);
+    if (range.ds.lo >= 0) {
+        range.s = {at0.s.lo, at1.s.hi};
+    } else if (range.ds.hi <= 0) {
+        range.s = {at1.s.lo, at0.s.hi};
+    } else {
+        const I gain = range.ds * elapsed;
+        range.s = intersection(at0.s + gain, at1.s - gain);
+        range.s.lo = std::max(range.s.lo, 0.0);
+    }
+    return range;
+}
+
+bool TaperedSegment::along_ray(const SkeletonColumns& c, double, const SeenFrom& ray,
+                               SkeletonAlongRay& e) {
+    using namespace along_ray_detail;
+    e.form = SkeletonAlongRay::Form::taper;
+    if (!e.taper.see(ray.origin, ray.direction, c.a, c.b, c.width_a, c.width_b, ray.span)) {
+        return false;
+    }
+    // q is at least what it is for the ball around the segment, all of it as wide as its widest.
+    const Ball around = ball(c);
+    const double widest = std::max(c.width_a, c.width_b);
+    const Relative from = relative_to(around.center, widest, ray.origin, ray.direction);
+    const MovingSquare square = from_point(from, ray.span);
+    if (!usable(square.kappa, from.offset_norm + square.rho, mag(ray.span))) return false;
+    const double reach = (std::sqrt(ray.cut) + around.radius / widest) * (1 + 16 * u_round);
+    e.active = sublevel(square, reach * reach * (1 + 4 * u_round));
+    return true;
+}
+
+void TaperedSegment::see(const SkeletonColumns& c, const natural::Span& scale,
+                         const natural::Vector& origin, const natural::Vector&,
+                         const natural::Vector&, natural::RaySkeleton& e) {
+    using namespace natural;
+    (void)origin;
+    e.axis = times(scale, minus(vector(c.b), vector(c.a)));
+    e.taper_start = quick::mul(scale, Span(c.width_a));
+    e.taper_rate = quick::mul(scale, quick::sub(Span(c.width_b), Span(c.width_a)));
+}
+
+natural::SquareAndSlope natural::taper_over(const RaySkeleton& e, const Span& t) {
+    const auto at = [&](const Linear& l) { return quick::add(l.start, quick::mul(t, l.rate)); };
+    const natural::Vector v{at(e.from.x), at(e.from.y), at(e.from.z)};
+    const natural::Vector d{e.from.x.rate, e.from.y.rate, e.from.z.rate};
+    const Span alpha = inner(v, e.axis), reach = quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
+    const Span length_square = inner(e.axis, e.axis);
+    const Span wanted = quick::add(quick::mul(alpha, e.taper_start), quick::mul(reach, e.taper_rate));
+    const Span rises = quick::add(quick::mul(length_square, e.taper_start), quick::mul(alpha, e.taper_rate));
+    Span u{0.0, 1.0};
+    if (rises.lo > 0) {
+        const Span foot = quick::div(wanted, rises);
+        u = {std::min(std::max(foot.lo, 0.0), 1.0), std::min(std::max(foot.hi, 0.0), 1.0)};
+    } else if (rises.hi < 0) {
+        // Beyond the apex the broader end is nearest.
+        u = e.taper_rate.lo > 0 ? Span(1.0) : e.taper_rate.hi < 0 ? Span(0.0) : Span(0.0, 1.0);
+    }
+    const natural::Vector from = minus(v, times(u, e.axis));
+    const Span width = quick::add(e.taper_start, quick::mul(u, e.taper_rate));
+    const Span share = quick::div(Span(1.0), quick::sqr(width));
+    return {quick::mul(quick::add(quick::add(quick::sqr(from.x), quick::sqr(from.y)), quick::sqr(from.z)), share),
+            quick::mul(quick::scale(2, inner(from, d)), share)};
+}
+
+}  // namespace ivory
