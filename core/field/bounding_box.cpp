@@ -127,7 +127,7 @@ Box3 box_of_reach(const Field& field) {
         const double widths = radius_at(highest, 1);
         for (std::size_t i = first; i < end; ++i) {
             // What the strongest would reach from here is in the box already: most are so inside.
-            if (certainly_holds(box, field, i, widths * field.width[i])) continue;
+            if (certainly_holds(box, field, i, widths * field.greatest_width_of(i))) continue;
             const double radius = reach(field, i, positive);
             if (radius < 0) continue;
             Box3 ball = skeleton_box(field, i);

@@ -307,7 +307,7 @@ class Search {
                 const Behind& at = behind[n];
                 const std::size_t i = at.element;
                 const double away = (plane - at.farthest) * per_length - lost_;
-                const double q = away > 0 ? away * field_.inverse_width[i] * (1 - slack) : 0;
+                const double q = away > 0 ? away / field_.greatest_width_of(i) * (1 - slack) : 0;
                 const double s = q * q * (1 - slack);
                 if (s >= far[static_cast<std::size_t>(field_.kernel[i])]) {
                     if (!kernel_ends(field_.kernel[i])) dropped += least;

@@ -33,7 +33,7 @@ struct RaySkeleton {
     Linear along;            // lambda of a segment, h of a circle or a disc
     Vec3<Span> axis;         // M of a segment
     Span radius;             // of a circle, of a disc
-    Span taper_start, taper_rate;  // of a taper: w_a and w_b - w_a, in least widths
+    Span taper_rate;         // of a taper: w_b - w_a in least widths
 };
 
 template <class Number>

@@ -164,12 +164,10 @@ bool TaperedSegment::along_ray(const SkeletonColumns& c, double, const SeenFrom&
 }
 
 void TaperedSegment::see(const SkeletonColumns& c, const natural::Span& scale,
-                         const natural::Vector& origin, const natural::Vector&,
+                         const natural::Vector&, const natural::Vector&,
                          const natural::Vector&, natural::RaySkeleton& e) {
     using namespace natural;
-    (void)origin;
     e.axis = times(scale, minus(vector(c.b), vector(c.a)));
-    e.taper_start = quick::mul(scale, Span(c.width_a));
     e.taper_rate = quick::mul(scale, quick::sub(Span(c.width_b), Span(c.width_a)));
 }
 
@@ -179,18 +177,17 @@ natural::SquareAndSlope natural::taper_over(const RaySkeleton& e, const Span& t)
     const natural::Vector d{e.from.x.rate, e.from.y.rate, e.from.z.rate};
     const Span alpha = inner(v, e.axis), reach = quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
     const Span length_square = inner(e.axis, e.axis);
-    const Span wanted = quick::add(quick::mul(alpha, e.taper_start), quick::mul(reach, e.taper_rate));
-    const Span rises = quick::add(quick::mul(length_square, e.taper_start), quick::mul(alpha, e.taper_rate));
+    const Span wanted = quick::add(alpha, quick::mul(reach, e.taper_rate));
+    const Span rises = quick::add(length_square, quick::mul(alpha, e.taper_rate));
     Span u{0.0, 1.0};
     if (rises.lo > 0) {
         const Span foot = quick::div(wanted, rises);
         u = {std::min(std::max(foot.lo, 0.0), 1.0), std::min(std::max(foot.hi, 0.0), 1.0)};
     } else if (rises.hi < 0) {
-        // Beyond the apex the broader end is nearest.
-        u = e.taper_rate.lo > 0 ? Span(1.0) : e.taper_rate.hi < 0 ? Span(0.0) : Span(0.0, 1.0);
+        u = Span(1.0);  // beyond the apex the broader end is nearest
     }
     const natural::Vector from = minus(v, times(u, e.axis));
-    const Span width = quick::add(e.taper_start, quick::mul(u, e.taper_rate));
+    const Span width = quick::add(Span(1.0), quick::mul(u, e.taper_rate));
     const Span share = quick::div(Span(1.0), quick::sqr(width));
     return {quick::mul(quick::add(quick::add(quick::sqr(from.x), quick::sqr(from.y)), quick::sqr(from.z)), share),
             quick::mul(quick::scale(2, inner(from, d)), share)};
