@@ -147,6 +147,39 @@ void draw_kernel(ViewerState& state, std::size_t element, const std::string& nam
     ImGui::NewLine();
 }
 
+// One for all of it, or one for each end.
+void draw_widths(ViewerState& state, std::size_t element, const std::string& name) {
+    const Element now = state.document.scene().elements[element];
+    const double step = step_for(now.width);
+    if (now.widths.empty()) {
+        label(state, "Width");
+        number_field(state,
+                     {.id = "element.width",
+                      .what = "Change width of " + name,
+                      .value = now.width,
+                      .step = step,
+                      .least = step},
+                     field_width(),
+                     [=](Scene& scene, double width) { scene.elements[element].width = width; });
+    }
+    for (std::size_t i = 0; i < now.widths.size(); ++i) {
+        const std::string number = std::to_string(i + 1), text = "Width " + number;
+        label(state, text.c_str());
+        number_field(state,
+                     {.id = "element.width." + number,
+                      .what = "Change width " + number + " of " + name,
+                      .value = now.widths[i],
+                      .step = step,
+                      .least = step},
+                     field_width(), [=](Scene& scene, double width) {
+                         Element& changed = scene.elements[element];
+                         changed.widths[i] = width;
+                         changed.width =
+                             *std::min_element(changed.widths.begin(), changed.widths.end());
+                     });
+    }
+}
+
 void draw_element(ViewerState& state, std::size_t element) {
     const Element now = state.document.scene().elements[element];
     const std::string name = names_of(state)[element];
@@ -180,16 +213,7 @@ void draw_element(ViewerState& state, std::size_t element) {
                  field_width(), [=](Scene& scene, double strength) {
                      scene.elements[element].strength = strength;
                  });
-    label(state, "Width");
-    const double step = step_for(now.width);
-    number_field(state,
-                 {.id = "element.width",
-                  .what = "Change width of " + name,
-                  .value = now.width,
-                  .step = step,
-                  .least = step},
-                 field_width(),
-                 [=](Scene& scene, double width) { scene.elements[element].width = width; });
+    draw_widths(state, element, name);
     draw_skeleton(state, element, name);
 }
 

@@ -80,8 +80,8 @@ double greatest_field(const Scene& scene) {
     };
     for (const std::size_t i : fullest_places(field, count)) {
         look_at(field.a(i));
-        const Vec3d middle =
-            with_field_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)).center; });
+        const Vec3d middle = with_field_shape(
+            field.shape[i], [&]<class S>() { return S::ball(field.columns(i)).center; });
         if (middle != field.a(i)) look_at(middle);
     }
     return greatest;

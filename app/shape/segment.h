@@ -1,6 +1,7 @@
 // A segment in the hand: its ends, and its middle for the whole.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -49,19 +50,24 @@ struct ShapeInHand<SegmentSkeleton> {
     }
     static std::vector<PictureLine> outline(const Projection& view, const Element& element,
                                             double widths) {
-        const double distance = widths * element.width;
-        return hull_outline(
-            view, std::array{Ball{of(element).a, distance}, Ball{of(element).b, distance}});
+        const std::array at = ends(element);
+        return hull_outline(view, std::array{Ball{of(element).a, widths * at[0]},
+                                             Ball{of(element).b, widths * at[1]}});
     }
     static void cover(const Element& element, double widths, std::vector<Ball>& balls) {
         const SegmentSkeleton& segment = of(element);
         const Vec3d along = segment.b - segment.a;
         cover_curve(
-            std::sqrt(dot(along, along)), widths * element.width,
+            std::sqrt(dot(along, along)), widths * std::max(ends(element)[0], ends(element)[1]),
             [&](double x) { return segment.a + x * along; }, balls);
     }
 
   private:
+    // The widths at both ends.
+    static std::array<double, 2> ends(const Element& element) {
+        if (element.widths.empty()) return {element.width, element.width};
+        return {element.widths.front(), element.widths.back()};
+    }
     static const SegmentSkeleton& of(const Element& element) {
         return std::get<SegmentSkeleton>(element.skeleton);
     }

@@ -98,8 +98,8 @@ namespace {
 // The box holds all places within `radius` of the skeleton, certainly: quick, since rounding is
 // covered by far more than it can cost.
 bool certainly_holds(const Box3& box, const Field& field, std::size_t i, double radius) {
-    const Surroundings around =
-        with_field_shape(field.shape[i], [&]<class S>() { return S::surroundings(field.columns(i)); });
+    const Surroundings around = with_field_shape(
+        field.shape[i], [&]<class S>() { return S::surroundings(field.columns(i)); });
     const double most = radius + around.radius;
     for (std::size_t k = 0; k < 3; ++k) {
         const double lo = around.box.lo[k], hi = around.box.hi[k];

@@ -42,8 +42,8 @@ struct Field {
     std::vector<double> bx, by, bz;
     std::vector<double> radius;
     std::vector<double> width_a, width_b;  // of tapers; none where there are none
-    std::vector<Color> color;           // linear RGB
-    std::vector<std::uint32_t> source;  // index in Scene::elements
+    std::vector<Color> color;              // linear RGB
+    std::vector<std::uint32_t> source;     // index in Scene::elements
     GroupStarts first{};
     // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an
     // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.

@@ -6,8 +6,8 @@ void LocalElements::make_room(std::size_t count) {
     if (element.size() >= count + room) return;
     const std::size_t size = count + count / 2 + room;
     element.assign(size, 0);
-    for (auto* values : {&x, &y, &z, &strength, &inverse_square, &mx, &my, &mz, &parameter, &length, &taper_rate,
-                         &least, &most, &peak, &inverse}) {
+    for (auto* values : {&x, &y, &z, &strength, &inverse_square, &mx, &my, &mz, &parameter, &length,
+                         &taper_rate, &least, &most, &peak, &inverse}) {
         values->assign(size, 0.0F);
     }
 }

@@ -15,8 +15,7 @@ struct LocalElements {
     GroupStarts first{};
     std::vector<std::int32_t> element;  // indices into Field
     // As Field and BundleEntry have them; the bounds as ActiveElements.
-    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, parameter, length,
-        taper_rate;
+    std::vector<float> x, y, z, strength, inverse_square, mx, my, mz, parameter, length, taper_rate;
     std::vector<float> least, most, peak, inverse;
     // No place is off by more than 2^-23 of this beside its own rounding.
     float magnitude = 0;

@@ -71,7 +71,7 @@ struct TaperAlongRay {
         Interval<double> between = Interval<double>::empty_set();  // of u
     };
     struct At {
-        Vector from_a;  // a -> p(t)
+        Vector from_a;                   // a -> p(t)
         Interval<double> wanted, rises;  // of (1): alpha w_a + A d, |M|^2 w_a + alpha d
         Interval<double> s, ds;
     };

@@ -13,8 +13,8 @@ struct BundleEntry {
     // 2 b / w^2, with the kernel's slope_sign: F' = slope dk away . d; 0 where `kinked` counts it
     // instead
     Real slope;
-    Real taper_rate;  // of tapers (core/shape/taper.h)
-    Real unused;      // entries are written four numbers at a time
+    Real taper_rate;             // of tapers (core/shape/taper.h)
+    Real unused;                 // entries are written four numbers at a time
     Real mx, my, mz, parameter;  // not of points
 };
 

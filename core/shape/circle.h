@@ -258,8 +258,8 @@ struct ShapeLanes<CircleSkeleton> {
         const V<Tag> inverse = hn::IfThenZeroElse(
             is_point,
             hn::IfThenElse(bounded, hn::Mul(unrounded, hn::Set(d, Margin::more)), constant(d, -1)));
-        return {inverse, hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)),
-                                 hn::Set(d, Margin::more))};
+        return {inverse,
+                hn::Mul(hn::Mul(e.parameter, at_least_0(inverse)), hn::Set(d, Margin::more))};
     }
 
     // The axis moves `away` by 10 u |p - c| more at the most, as a segment's foot does; rho and

@@ -85,7 +85,7 @@ struct Seen {
     V<Tag> magnitude;       // at least |v| + size
     V<Tag> strength;        // scaled
     V<Tag> inverse_square;  // 1 / w^2
-    V<Tag> taper_rate;  // of tapers: how much more the width is at m, in least widths
+    V<Tag> taper_rate;      // of tapers: how much more the width is at m, in least widths
 
     // Once all but m, parameter and size, unless it has an axis, and magnitude are set.
     HWY_INLINE void finish() {

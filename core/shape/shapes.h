@@ -41,10 +41,10 @@ using Skeleton = Shapes::Into<std::variant>;
 // and natural.h; the quick forms for SIMD, which are at the end of the same file, are asked for in
 // core/shape/shape_lanes.inl.
 template <class S>
-concept FieldShape =
-    requires(const SkeletonColumns& columns, const SeenFrom& ray,
-             SkeletonAlongRay& along, const natural::Span& span, const natural::Vector& v,
-             natural::RaySkeleton& on_ray, double width) {
+concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ray,
+                              SkeletonAlongRay& along, const natural::Span& span,
+                              const natural::Vector& v, natural::RaySkeleton& on_ray,
+                              double width) {
     { S::has_kinks } -> std::convertible_to<bool>;
     { S::has_axis } -> std::convertible_to<bool>;
     { S::m_power } -> std::convertible_to<int>;

@@ -41,11 +41,11 @@ constexpr Member<Skeleton, double> length(std::string_view key, std::string_view
 
 // A skeleton as numbers side by side: one column of the field for each component.
 struct SkeletonColumns {
-    Vec3d a, b;            // as written
-    Vec3d m;               // computed to nearest, for the quick bounds
-    double radius = 0;     // as written
-    double length = 0;     // of m, where it has one that matters
-    double parameter = 0;  // what else the quick bounds need
+    Vec3d a, b;                       // as written
+    Vec3d m;                          // computed to nearest, for the quick bounds
+    double radius = 0;                // as written
+    double length = 0;                // of m, where it has one that matters
+    double parameter = 0;             // what else the quick bounds need
     double width_a = 0, width_b = 0;  // of tapers, as written: at a and at b
 };
 

@@ -33,8 +33,8 @@ bool TaperAlongRay::see(const Vec3d& from, const Vec3d& heading, const Vec3d& en
     along = inner(m, d);
     length_square = square(m);
     // No product of four of these leaves the range of doubles.
-    const double most = std::max({one_norm(from), one_norm(end_a), one_norm(end_b), mag(span) * 8,
-                                  at_a, at_b});
+    const double most =
+        std::max({one_norm(from), one_norm(end_a), one_norm(end_b), mag(span) * 8, at_a, at_b});
     return most < 1e60 && least_width > 1e-60;
 }
 
@@ -164,8 +164,8 @@ bool TaperedSegment::along_ray(const SkeletonColumns& c, double, const SeenFrom&
 }
 
 void TaperedSegment::see(const SkeletonColumns& c, const natural::Span& scale,
-                         const natural::Vector&, const natural::Vector&,
-                         const natural::Vector&, natural::RaySkeleton& e) {
+                         const natural::Vector&, const natural::Vector&, const natural::Vector&,
+                         natural::RaySkeleton& e) {
     using namespace natural;
     e.axis = times(scale, minus(vector(c.b), vector(c.a)));
     e.taper_rate = quick::mul(scale, quick::sub(Span(c.width_b), Span(c.width_a)));
@@ -175,7 +175,8 @@ natural::SquareAndSlope natural::taper_over(const RaySkeleton& e, const Span& t)
     const auto at = [&](const Linear& l) { return quick::add(l.start, quick::mul(t, l.rate)); };
     const natural::Vector v{at(e.from.x), at(e.from.y), at(e.from.z)};
     const natural::Vector d{e.from.x.rate, e.from.y.rate, e.from.z.rate};
-    const Span alpha = inner(v, e.axis), reach = quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
+    const Span alpha = inner(v, e.axis),
+               reach = quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
     const Span length_square = inner(e.axis, e.axis);
     const Span wanted = quick::add(alpha, quick::mul(reach, e.taper_rate));
     const Span rises = quick::add(length_square, quick::mul(alpha, e.taper_rate));
@@ -189,7 +190,9 @@ natural::SquareAndSlope natural::taper_over(const RaySkeleton& e, const Span& t)
     const natural::Vector from = minus(v, times(u, e.axis));
     const Span width = quick::add(Span(1.0), quick::mul(u, e.taper_rate));
     const Span share = quick::div(Span(1.0), quick::sqr(width));
-    return {quick::mul(quick::add(quick::add(quick::sqr(from.x), quick::sqr(from.y)), quick::sqr(from.z)), share),
+    return {quick::mul(
+                quick::add(quick::add(quick::sqr(from.x), quick::sqr(from.y)), quick::sqr(from.z)),
+                share),
             quick::mul(quick::scale(2, inner(from, d)), share)};
 }
 

@@ -40,8 +40,7 @@ struct TaperedSegment {
 
     static SkeletonColumns columns(const SegmentSkeleton& segment, double at_a, double at_b) {
         const bool narrows = at_a > at_b;
-        SkeletonColumns c =
-            (narrows ? SegmentSkeleton{segment.b, segment.a} : segment).columns();
+        SkeletonColumns c = (narrows ? SegmentSkeleton{segment.b, segment.a} : segment).columns();
         c.width_a = narrows ? at_b : at_a;
         c.width_b = narrows ? at_a : at_b;
         return c;
@@ -125,9 +124,9 @@ struct ShapeLanes<TaperedSegment> {
     template <class Tag>
     static HWY_INLINE Vec3v<Tag> away(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
                                       const Vec3v<Tag>& p, V<Tag>& square) {
-        const Foot<Tag> at = foot<Tag>(
-            d, from_first_place(d, e, p), {hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)},
-            hn::Set(d, e.taper_rate));
+        const Foot<Tag> at = foot<Tag>(d, from_first_place(d, e, p),
+                                       {hn::Set(d, e.mx), hn::Set(d, e.my), hn::Set(d, e.mz)},
+                                       hn::Set(d, e.taper_rate));
         const V<Tag> share = square_of(at.per_width);
         square = hn::Mul(dot<Tag>(at.from, at.from), share);
         return {hn::Mul(at.from.x, share), hn::Mul(at.from.y, share), hn::Mul(at.from.z, share)};
@@ -157,18 +156,16 @@ struct ShapeLanes<TaperedSegment> {
         const V<Tag> away = hn::Max(length_of(d, at.from), constant(d, 1e-18));
         const V<Tag> distance = hn::Mul(away, at.per_width);
         const V<Tag> turns = hn::Mul(distance, e.taper_rate);
-        const V<Tag> gamma =
-            hn::Neg(hn::Add(hn::Div(dot<Tag>(at.from, e.m), away), turns));
-        const V<Tag> gain =
-            at_least_0(hn::Max(hn::Mul(hn::Neg(gamma), hn::Sub(constant(d, 1), at.u)),
-                               hn::Mul(gamma, at.u)));
+        const V<Tag> gamma = hn::Neg(hn::Add(hn::Div(dot<Tag>(at.from, e.m), away), turns));
+        const V<Tag> gain = at_least_0(
+            hn::Max(hn::Mul(hn::Neg(gamma), hn::Sub(constant(d, 1), at.u)), hn::Mul(gamma, at.u)));
         // What rounding does to gamma, and to the direction that it is told by.
-        const V<Tag> lost =
-            hn::MulAdd(hn::Add(e.size, hn::Abs(turns)), hn::Set(d, 4 * Margin::margin),
-                       hn::Div(hn::Mul(hn::Add(hn::Add(e.size, hn::Abs(turns)),
-                                                  hn::Add(e.size, hn::Abs(turns))),
-                                          error),
-                                  away));
+        const V<Tag> lost = hn::MulAdd(
+            hn::Add(e.size, hn::Abs(turns)), hn::Set(d, 4 * Margin::margin),
+            hn::Div(
+                hn::Mul(hn::Add(hn::Add(e.size, hn::Abs(turns)), hn::Add(e.size, hn::Abs(turns))),
+                        error),
+                away));
         return {hn::Sub(distance, hn::Add(hn::Add(gain, lost), error)), hn::Add(distance, error),
                 hn::MulAdd(length_of(d, there), at.per_width, error)};
     }
@@ -191,8 +188,8 @@ struct ShapeLanes<TaperedSegment> {
             hn::Max(least_between(d, at_least_0(first.least), at_least_0(last.least),
                                   (s.end - s.begin) * Margin::more),
                     hn::Mul(at_least_0(ball), hn::Div(hn::Set(d, Margin::less), broadest)));
-        const V<Tag> far = hn::Min(hn::Max(first.here, first.at_other),
-                                   hn::Max(last.here, last.at_other));
+        const V<Tag> far =
+            hn::Min(hn::Max(first.here, first.at_other), hn::Max(last.here, last.at_other));
         return range_of_rays(d, e.magnitude, near, far, s, error);
     }
 
@@ -255,8 +252,8 @@ struct ShapeLanes<TaperedSegment> {
         const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
         const double u = on.u;
         eta = hn::MulAdd(c(24 * u), v_length, hn::MulAdd(c(8 * u), e.size, eta));
-        const V<Tag> per_size = hn::Div(
-            hn::Add(v_length, v_length), hn::Max(e.size, hn::Set(d, least_square<hn::TFromD<Tag>>)));
+        const V<Tag> per_size = hn::Div(hn::Add(v_length, v_length),
+                                        hn::Max(e.size, hn::Set(d, least_square<hn::TFromD<Tag>>)));
         const V<Tag> k = hn::MulAdd(e.taper_rate, hn::Add(c(2), per_size), c(1));
         const V<Tag> known = hn::MulAdd(c(5.1), hn::Mul(inverse, e.size), c(1));
         const V<Tag> unknown = hn::MulAdd(e.taper_rate, k, c(1));

@@ -1,5 +1,6 @@
 #include "tests/tools/random_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -48,6 +49,12 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     element.width = std::exp(random.uniform(std::log(0.3), std::log(1.5)));
     element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
     element.visible = !random.chance(0.05);
+    if (recipe.tapers) {
+        element.skeleton = random_skeleton(Shape::segment, first, random);
+        const double other = element.width * std::exp(random.uniform(-1.6, 1.6));
+        element.widths = {element.width, other};
+        element.width = std::min(element.width, other);
+    }
     return element;
 }
 
@@ -58,6 +65,7 @@ Element moved(Element element, Move&& move, double factor) {
     for (Vec3d* const place : members.places) *place = move(*place);
     for (double* const length : members.lengths) *length *= factor;
     element.width *= factor;
+    for (double& width : element.widths) width *= factor;
     return element;
 }
 

@@ -28,8 +28,8 @@ void RayField::build(const Field& field, const ElementList& list, const Ray& ray
         const Vector rate = times(scale, direction);
         const Vector start = times(scale, minus(origin, vector(field.a(i))));
         e.from = moving(start, rate);
-        with_field_shape(e.shape,
-                   [&]<class S>() { S::see(field.columns(i), scale, origin, start, rate, e); });
+        with_field_shape(
+            e.shape, [&]<class S>() { S::see(field.columns(i), scale, origin, start, rate, e); });
     }
 }
 

@@ -106,6 +106,27 @@ TEST(ParseScene, ReadsEveryKeyThatIsNotADefault) {
     EXPECT_EQ(scene.elements[2].kernel, KernelKind::blinn);
 }
 
+TEST(ParseScene, TheWidthOfASegmentMayTaper) {
+    const auto scene_with = [](const std::string& shape, const std::string& width) {
+        return R"({"ivory": 1, "threshold": 0.5, "elements": [{"shape": )" + shape +
+               R"(, "width": )" + width + "}]}";
+    };
+    const std::string segment = R"("segment", "a": [0, 0, 0], "b": [1, 0, 0])";
+    const Scene scene = parse_scene(scene_with(segment, "[0.5, 0.25]"), "scene");
+    EXPECT_EQ(scene.elements[0].widths, (std::vector{0.5, 0.25}));
+    EXPECT_EQ(scene.elements[0].width, 0.25);
+    EXPECT_EQ(parse_scene(write_scene(scene), "scene"), scene);
+    EXPECT_TRUE(parse_scene(scene_with(segment, "0.5"), "scene").elements[0].widths.empty());
+    for (const char* const wrong :
+         {"[0.5]", "[0.5, 0.25, 1]", "[0.5, 0]", "[0.5, -1]", "[0.5, []]", "[]", "{}"}) {
+        EXPECT_THROW(static_cast<void>(parse_scene(scene_with(segment, wrong), "scene")), Error)
+            << wrong;
+    }
+    EXPECT_THROW(static_cast<void>(parse_scene(
+                     scene_with(R"("point", "position": [0, 0, 0])", "[0.5, 0.25]"), "scene")),
+                 Error);
+}
+
 TEST(ParseScene, AnEmptySceneIsAScene) {
     const Scene scene =
         parse_scene(R"({"ivory": 1, "threshold": 1, "elements": [], "lights": []})", "x");

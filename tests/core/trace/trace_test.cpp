@@ -112,7 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"shifted", {.elements = 8, .shift = 1e6}, 1e-9},
                     Case{"small", {.elements = 8, .scale = 1e-6}, 1e-9},
                     Case{"large", {.elements = 8, .scale = 1e6}, 1e-9},
-                    Case{"critical", {.elements = 8, .critical = true}, 1e-9}),
+                    Case{"critical", {.elements = 8, .critical = true}, 1e-9},
+                    Case{"tapers", {.elements = 8, .tapers = true}, 1e-9}),
     [](const auto& test_case) { return test_case.param.name; });
 
 std::vector<Case> one_kind_alone() {
@@ -129,7 +130,9 @@ INSTANTIATE_TEST_SUITE_P(Each, TraceAgainstReference, testing::ValuesIn(one_kind
 class TraceDegenerate : public testing::TestWithParam<tools::Family> {};
 INSTANTIATE_TEST_SUITE_P(Each, TraceDegenerate,
                          testing::Values(tools::Family::disc_edge_on, tools::Family::disc_axis,
-                                         tools::Family::disc_rim, tools::Family::disc_plane),
+                                         tools::Family::disc_rim, tools::Family::disc_plane,
+                                         tools::Family::taper_axis, tools::Family::taper_line,
+                                         tools::Family::taper_apex, tools::Family::taper_swallow),
                          [](const auto& family) {
                              const auto n = static_cast<std::size_t>(family.param);
                              return std::string(tools::family_words[n]);
