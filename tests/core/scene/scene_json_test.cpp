@@ -101,6 +101,7 @@ TEST(ParseScene, ReadsEveryKeyThatIsNotADefault) {
                                           KernelKind::wyvill,
                                           -0.5,
                                           0.25,
+                                          {},
                                           false}));
     EXPECT_EQ(scene.elements[1].kernel, KernelKind::nishimura);
     EXPECT_EQ(scene.elements[2].kernel, KernelKind::blinn);
