@@ -203,21 +203,67 @@ struct ShapeLanes<TaperedSegment> {
                                            hn::Set(d, least_square<hn::TFromD<Tag>>)));
     }
 
-    // (2); `inverse` is 1 / (1 - kappa^2 q^2) over |m|. Beyond, nothing is known of f''; the gradient is
-    // defined but at the apex itself.
+    // Of a ray of the bundle on the stretch, at least W = w_a + alpha d / |M|^2 in least widths: linear
+    // along it, and off by what the ray is off the axis.
     template <class Tag>
-    static HWY_INLINE Turning<Tag> turning(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>&,
-                                           V<Tag>, V<Tag> most) {
+    static HWY_INLINE V<Tag> least_cone(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                        V<Tag> error) {
+        using Margin = Margins<hn::TFromD<Tag>>;
+        const Tag d;
+        const V<Tag> alpha = hn::Min(dot<Tag>(e.from_axis(s.axis, s.begin), e.m),
+                                     dot<Tag>(e.from_axis(s.axis, s.end), e.m));
+        const V<Tag> aside = hn::Add(
+            error, hn::Set(d, (s.t_offset + s.end) * s.spread * Margin::more * Margin::more));
+        const V<Tag> least = hn::NegMulAdd(hn::Mul(e.size, hn::Set(d, Margin::more)), aside, alpha);
+        const V<Tag> share =
+            hn::Div(hn::Mul(e.taper_rate, least),
+                    hn::Max(square_of(e.size), hn::Set(d, least_square<hn::TFromD<Tag>>)));
+        // rounding of the quotient, and of its sum with 1
+        return hn::Sub(hn::NegMulAdd(hn::Abs(share), hn::Set(d, Margin::margin), share),
+                       hn::Set(d, Margin::margin - 1));
+    }
+
+    // (2), or with w* (|m|^2 + alpha r) = w* |m|^2 W in its place
+    //     (D^2)'' / 2 >= 1 - (1 + 2 kappa q)^2 / (W max(W, 1)),
+    // whichever says more; `inverse` is what `errors` needs of g = w* / W = 1 / (1 - kappa^2 q^2), over
+    // |m|. Where neither says anything nothing is known of f''; the gradient is defined but at the apex
+    // itself.
+    template <class Tag>
+    static HWY_INLINE Turning<Tag> turning(const Seen<Tag, shape>& e,
+                                           const Reach<hn::TFromD<Tag>>& s, V<Tag> error,
+                                           V<Tag> most) {
         using Margin = Margins<hn::TFromD<Tag>>;
         const Tag d;
         const V<Tag> square = bent(d, e, most), one = constant(d, 1);
         const V<Tag> widened = hn::Set(d, Margin::more);
-        const M<Tag> is_known = hn::Lt(square, constant(d, most_bent));
+        const V<Tag> cone = least_cone(e, s, error);
+        const M<Tag> is_low = hn::Lt(square, constant(d, most_bent)),
+                     is_wide = hn::Gt(cone, constant(d, least_straight));
         const V<Tag> steeper = hn::MulAdd(constant(d, 2), hn::Sqrt(square), one);
-        const V<Tag> straight =
-            hn::Div(widened, hn::Max(hn::Sub(one, square), constant(d, least_straight)));
-        const V<Tag> outward = hn::Mul(hn::Mul(square_of(steeper), straight), widened);
-        return {hn::IfThenElse(is_known, hn::Div(hn::Mul(straight, widened), e.size), hn::Neg(one)),
+        const V<Tag> wide = hn::Max(cone, constant(d, least_straight));
+        const V<Tag> huge = constant(d, 1e18);
+        const V<Tag> by_q = hn::IfThenElse(
+            is_low, hn::Div(widened, hn::Max(hn::Sub(one, square), constant(d, least_straight))),
+            huge);
+        const V<Tag> by_cone =
+            hn::IfThenElse(is_wide, hn::Div(widened, hn::Mul(wide, hn::Max(wide, one))), huge);
+        // The other term of (D^2)'' / 2 is not below 0, which leaves 1 more.
+        const V<Tag> steepness = hn::Mul(square_of(steeper), widened);
+        const V<Tag> outward = hn::Mul(
+            hn::Min(hn::Mul(steepness, by_q), hn::MulAdd(steepness, by_cone, one)), widened);
+        // kappa q, at most
+        const V<Tag> turn = hn::Mul(hn::Sqrt(square), widened);
+        const V<Tag> turned = hn::Mul(
+            hn::MulAdd(constant(d, 2), turn, constant(d, 3)),
+            hn::Max(hn::Mul(hn::MulAdd(constant(d, 2), turn, one), constant(d, 0.36)), one));
+        const V<Tag> of_foot = hn::Min(
+            hn::Mul(by_q, constant(d, 5)),
+            hn::IfThenElse(
+                is_wide,
+                hn::Mul(turned, hn::Div(hn::Mul(hn::Add(one, e.taper_rate), widened), wide)),
+                huge));
+        return {hn::IfThenElse(hn::Or(is_low, is_wide), hn::Div(hn::Mul(of_foot, widened), e.size),
+                               hn::Neg(one)),
                 outward};
     }
     template <class Tag>
@@ -238,14 +284,18 @@ struct ShapeLanes<TaperedSegment> {
     // |m|^2 omega / g, all in least widths. With v = p - a off by eta and m by 3 u |m|, alpha is off by
     // |m| (eta + 12 u |v|) and A by 2 |v| eta + 10 u |v|^2; so u is off by du with
     //     |m| du <= g / omega ((1 + u r + 2 r |v| / |m|) (eta + 12 u |v|) + 8 u omega |m|),
-    // and since |v| <= u |m| + omega D and r D = kappa q |m| <= 0.9 |m|, by X = 5 g (eta + 12 u |v| +
-    // 2 u |m|). There D^2 is larger by |m|^2 omega du^2 at most, and so D by X at most; rounding
-    // takes some 8 u |v| + 4 u |m| more, and moves widths by 2 u of themselves. `away` turns with the
-    // place of the foot, and with its width twice, by no more than 2.8 times all that.
-    // Beyond kappa q = 0.89 the slope counts as unknown. With d the error of both sides of (1),
-    // |m| K (eta + 12 u |v|) where K = 1 + 2 r + 2 r |v| / |m|, D^2 is larger by no more than the
-    // factor times du^2, where du <= 1 and du <= d over that factor: by d, and D by d / (2 D), where
-    // |m| / D <= 1.12 r.
+    // and since |v| <= u |m| + omega D and r D = kappa q |m|, by
+    //     X = (3 + 2 kappa q) g (eta + 12 u |v| + 2 u |m|),
+    // with kappa q <= 0.9, 4.8 g, where the first bound of `turning` holds. D^2 is then larger by
+    // |m|^2 omega du^2 / omega^3 at most, and so D by X at most; rounding takes some 8 u |v| + 4 u |m|
+    // more, and moves widths by 2 u of themselves. `away` turns with the place of the foot, and with
+    // its width twice, by no more than (1 + 2 kappa q) times all that: 2.8 times, or `inverse` has
+    // the rest (0.36 > 1 / 2.8).
+    // Where nothing is known the slope counts as unknown too, and there are two cases. If kappa q <=
+    // 0.9 for a place of the stretch, g <= 5.3 there, and D is larger by 26.5 (eta + ...). Else, with d
+    // the error of both sides of (1), |m| K (eta + 12 u |v|) where K = 1 + 2 r + 2 r |v| / |m|, D^2 is
+    // larger by no more than the factor times du^2, where du <= 1 and du <= d over that factor: by d,
+    // and D by d / (2 D), where |m| / D <= 1.12 r.
     template <class Tag>
     static HWY_INLINE EntryErrors<Tag> errors(Tag d, const Entering& on, const Seen<Tag, shape>& e,
                                               V<Tag> eta, V<Tag> v_length, V<Tag> inverse) {
@@ -255,8 +305,8 @@ struct ShapeLanes<TaperedSegment> {
         const V<Tag> per_size = hn::Div(hn::Add(v_length, v_length),
                                         hn::Max(e.size, hn::Set(d, least_square<hn::TFromD<Tag>>)));
         const V<Tag> k = hn::MulAdd(e.taper_rate, hn::Add(c(2), per_size), c(1));
-        const V<Tag> known = hn::MulAdd(c(5.1), hn::Mul(inverse, e.size), c(1));
-        const V<Tag> unknown = hn::MulAdd(e.taper_rate, k, c(1));
+        const V<Tag> known = hn::MulAdd(c(1.01), hn::Mul(inverse, e.size), c(1));
+        const V<Tag> unknown = hn::MulAdd(e.taper_rate, k, c(28));
         const V<Tag> value =
             hn::Mul(eta, hn::IfThenElse(hn::Lt(inverse, hn::Zero(d)), unknown, known));
         return {value, hn::Mul(value, c(1.9))};
