@@ -34,8 +34,6 @@ struct ActiveElements {
     void take(const LocalElements& near, std::size_t i, double unit);
     // Keeps nothing.
     void make_room(std::size_t count);
-    // What is taken from now on is of that group.
-    void begin(std::size_t group) { first[group] = first[field_groups]; }
     // All groups are there: so many elements.
     void end(std::size_t count);
 };

@@ -81,9 +81,8 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
 CurvatureSums bound_curvature(const Field& field, const Stretch& stretch, double scale,
                               ActiveElements& active) {
     CurvatureSums sums;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = active.first[group], end = active.first[group + 1];
-        if (first == end) return;
+    for_groups_of(active.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                  std::size_t end) HWY_ATTR {
         bend_group<shape, kind>(field, stretch, scale, active, first, end, sums);
     });
     return sums;
@@ -107,9 +106,8 @@ void bound_curvature_local_group(LocalElements& near, const Reach<float>& reach,
 CurvatureSums bound_curvature_local(LocalElements& near, const LocalStretch& stretch) {
     CurvatureSums sums;
     const Reach<float> reach = reach_of(stretch, near);
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = near.first[group], end = near.first[group + 1];
-        if (first == end) return;
+    for_groups_of(near.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                std::size_t end) HWY_ATTR {
         bound_curvature_local_group<shape, kind>(near, reach, first, end, sums);
     });
     return sums;

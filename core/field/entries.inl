@@ -254,10 +254,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
     }
     constexpr std::size_t group = group_of(shape, kind);
     if (strong.entries != nullptr) {
-        strong.entries->count[group] =
-            static_cast<std::uint32_t>(strong.entries->size - strong_before);
+        strong.entries->end_group(group, strong.entries->size - strong_before);
     }
-    if (weak != nullptr) weak->count[group] = static_cast<std::uint32_t>(weak->size - weak_before);
+    if (weak != nullptr) weak->end_group(group, weak->size - weak_before);
     sums.error += sum_of(error);
     sums.slope += sum_of(slope);
     sums.magnitude += sum_of(magnitude);
@@ -286,9 +285,8 @@ StageSums coarse(const Field& field, const Stretch& stretch, double scale, const
     window.strong.clear();
     window.weak.clear();
     const Entering on = entering<float>(stretch, field.unit);
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = active.first[group], end = active.first[group + 1];
-        if (first == end) return;
+    for_groups_of(active.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                  std::size_t end) HWY_ATTR {
         const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
         enter_group<float, shape, kind>(source, on, cuts, first, end, {&window.strong},
                                         &window.weak, sums);
@@ -319,21 +317,27 @@ StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretc
     const double size =
         std::sqrt(double{from.x} * double{from.x} + double{from.y} * double{from.y} +
                   double{from.z} * double{from.z});
-    const double end = (stretch.t_offset + stretch.end) * more;
-    const Entering on{.u = 0x1p-24,
-                      .unit = 1,
-                      .H = 0.5 * (stretch.end - stretch.begin) * more + end * stretch.spread * more,
-                      .end = end,
-                      .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
-                      .least_rho = std::sqrt(double{least_square<float>}) * more};
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = near.first[group], end_of_group = near.first[group + 1];
-        if (strong.others != nullptr) strong.others->begin(group);
-        if (first == end_of_group) return;
+    const double last = (stretch.t_offset + stretch.end) * more;
+    const Entering on{
+        .u = 0x1p-24,
+        .unit = 1,
+        .H = 0.5 * (stretch.end - stretch.begin) * more + last * stretch.spread * more,
+        .end = last,
+        .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
+        .least_rho = std::sqrt(double{least_square<float>}) * more};
+    GroupStarts none;
+    GroupStartsWriter starts(strong.others != nullptr ? strong.others->first : none);
+    for_groups_of(near.first, [&]<Shape shape, KernelKind kind>(
+                                  std::size_t group, std::size_t first, std::size_t end) HWY_ATTR {
+        if (strong.others != nullptr) starts.begin(group, strong.others->size());
         const LocalArrivals<shape> source{near, reach, from};
-        enter_group<float, shape, kind>(source, on, cuts, first, end_of_group, strong, &weak, sums);
+        enter_group<float, shape, kind>(source, on, cuts, first, end, strong, &weak, sums);
     });
-    if (strong.others != nullptr) strong.others->end(strong.others->size());
+    if (strong.others != nullptr) {
+        const std::size_t count = strong.others->size();
+        starts.end(count);
+        strong.others->end(count);
+    }
     return sums;
 }
 
@@ -347,9 +351,8 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
     StageSums sums;
     window.fine.clear();
     const Entering on = entering<double>(stretch, 1);
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = active.first[group], end = active.first[group + 1];
-        if (first == end) return;
+    for_groups_of(active.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                  std::size_t end) HWY_ATTR {
         const FieldArrivals<shape> source{field, stretch, scale, window.middle, active};
         enter_group<double, shape, kind>(source, on, {}, first, end, {&window.fine}, nullptr, sums);
     });

@@ -1,5 +1,7 @@
 #include "core/field/inclusion.h"
 
+#include <variant>
+
 #include "core/interval/quick.h"
 
 namespace ivory {
@@ -68,10 +70,9 @@ Terms hull(const Terms& a, const Terms& b) {
 
 // Each piece over the part of the window in which it may be the nearest; s and s' pass continuously
 // from piece to piece, s'' jumps, so the hull of the pieces' ranges encloses all three.
-Terms squares(const ElementAlongRay& e, double t0, double t1) {
+Terms form_over(const SquaresAlongRay& squares, const ElementAlongRay& e, double t0, double t1) {
     Terms sum;  // all empty
-    for (std::size_t i = 0; i < e.piece_count; ++i) {
-        const Piece& piece = e.pieces[i];
+    for (const Piece& piece : squares.all()) {
         const double from = std::max(t0, piece.where.lo), to = std::min(t1, piece.where.hi);
         if (!(from <= to)) continue;
         Terms k = parabola(e.kernel, piece.square, e.peak, from, to);
@@ -82,48 +83,27 @@ Terms squares(const ElementAlongRay& e, double t0, double t1) {
     return sum;
 }
 
-Terms circle(const ElementAlongRay& e, double t0, double t1) {
-    const CircleAlongRay::At a = e.circle.at(t0), b = e.circle.at(t1);
-    const CircleAlongRay::Over range = e.circle.over(t0, t1, a, b);
+// A circle, a disc, a taper.
+template <class Form>
+Terms form_over(const Form& form, const ElementAlongRay& e, double t0, double t1) {
+    const auto a = form.at(t0), b = form.at(t1);
+    const SquareRange range = form.over(t0, t1, a, b);
     return composed(e.kernel, a.s, a.ds, b.s, range.s, range.ds, range.dds);
 }
 
-Terms taper(const ElementAlongRay& e, double t0, double t1) {
-    const TaperAlongRay::At a = e.taper.at(t0), b = e.taper.at(t1);
-    const TaperAlongRay::Over range = e.taper.over(t0, t1, a, b);
-    return composed(e.kernel, a.s, a.ds, b.s, range.s, range.ds, range.dds);
-}
-
-Terms unbounded() {
+Terms form_over(const UnboundedAlongRay&, const ElementAlongRay&, double, double) {
     const Interval<double> k{0.0, 1.0};
     const Interval<double> all = Interval<double>::entire();
     return {k, k, k, all, all, all};
 }
 
 Terms element_over(const ElementAlongRay& e, double t0, double t1) {
-    switch (e.form) {
-        case ElementAlongRay::Form::squares:
-            return squares(e, t0, t1);
-        case ElementAlongRay::Form::circle:
-            return circle(e, t0, t1);
-        case ElementAlongRay::Form::taper:
-            return taper(e, t0, t1);
-        case ElementAlongRay::Form::unbounded:
-            break;
-    }
-    return unbounded();
+    return std::visit([&](const auto& form) { return form_over(form, e, t0, t1); }, e.form);
 }
 
-Interval<double> element_at(const ElementAlongRay& e, double t) {
-    if (e.form == ElementAlongRay::Form::unbounded) return {0.0, 1.0};
-    if (e.form != ElementAlongRay::Form::squares) {
-        const bool is_circle = e.form == ElementAlongRay::Form::circle;
-        const Interval<double> s = is_circle ? e.circle.at(t).s : e.taper.at(t).s;
-        return with_kernel(e.kernel, [&]<class K>() { return over_thin<K>(s); });
-    }
+Interval<double> form_at(const SquaresAlongRay& squares, const ElementAlongRay& e, double t) {
     Interval<double> k = Interval<double>::empty_set();
-    for (std::size_t i = 0; i < e.piece_count; ++i) {
-        const Piece& piece = e.pieces[i];
+    for (const Piece& piece : squares.all()) {
         if (!(piece.where.lo <= t && t <= piece.where.hi)) continue;
         const SquareAt a = piece.square.at(t);
         k = hull(k, with_kernel(e.kernel, [&]<class K>() {
@@ -134,6 +114,20 @@ Interval<double> element_at(const ElementAlongRay& e, double t) {
                  }));
     }
     return k;
+}
+
+template <class Form>
+Interval<double> form_at(const Form& form, const ElementAlongRay& e, double t) {
+    const Interval<double> s = form.at(t).s;
+    return with_kernel(e.kernel, [&]<class K>() { return over_thin<K>(s); });
+}
+
+Interval<double> form_at(const UnboundedAlongRay&, const ElementAlongRay&, double) {
+    return {0.0, 1.0};
+}
+
+Interval<double> element_at(const ElementAlongRay& e, double t) {
+    return std::visit([&](const auto& form) { return form_at(form, e, t); }, e.form);
 }
 
 // A sum of intervals in plain doubles. n terms, each b k with one rounding, added one by one, err
@@ -185,7 +179,7 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
                           std::ldexp(element.beyond.hi, -exponent_)};
         // What is known of nothing but 0 <= k <= 1 would leave the derivatives unbounded; where it
         // is too weak to matter it only widens the rest.
-        if (element.form == ElementAlongRay::Form::unbounded &&
+        if (std::holds_alternative<UnboundedAlongRay>(element.form) &&
             std::abs(element.strength) <= 0x1p-50 / static_cast<double>(field.size())) {
             element.beyond = {std::min(element.strength, 0.0), std::max(element.strength, 0.0)};
             element.active = Interval<double>::empty_set();

@@ -166,13 +166,15 @@ PeakSums bound(const Field& field, const Stretch& stretch, double scale, double 
     kept.make_room(candidates.size());
     PeakSums sums;
     std::size_t count = 0;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        kept.first[group] = static_cast<std::uint32_t>(count);
-        const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
-        if (first == end) return;
-        bound_group<shape, kind>(field, stretch, scale, cut, candidates, first, end, kept, count,
-                                 sums);
-    });
+    GroupStartsWriter starts(kept.first);
+    for_groups_of(candidates.first,
+                  [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
+                                                    std::size_t end) HWY_ATTR {
+                      starts.begin(group, count);
+                      bound_group<shape, kind>(field, stretch, scale, cut, candidates, first, end,
+                                               kept, count, sums);
+                  });
+    starts.end(count);
     kept.end(count);
     return sums;
 }
@@ -220,13 +222,15 @@ PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale
     kept.make_room(candidates.size());
     PeakSums sums;
     std::size_t count = 0;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        kept.first[group] = static_cast<std::uint32_t>(count);
-        const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
-        if (first == end) return;
-        bound_cluster_group<kind>(field.clusters, stretch, scale, cut, candidates, first, end, kept,
-                                  count, sums);
-    });
+    GroupStartsWriter starts(kept.first);
+    for_groups_of(candidates.first,
+                  [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
+                                                    std::size_t end) HWY_ATTR {
+                      starts.begin(group, count);
+                      bound_cluster_group<kind>(field.clusters, stretch, scale, cut, candidates,
+                                                first, end, kept, count, sums);
+                  });
+    starts.end(count);
     kept.end(count);
     return sums;
 }
@@ -298,14 +302,15 @@ PeakSums bound_local(const LocalElements& candidates, const LocalStretch& stretc
     kept.magnitude = candidates.magnitude;
     PeakSums sums;
     std::size_t count = 0;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        kept.first[group] = static_cast<std::uint32_t>(count);
-        const std::size_t first = candidates.first[group], end = candidates.first[group + 1];
-        if (first == end) return;
-        bound_local_group<shape, kind>(candidates, stretch, static_cast<float>(cut), first, end,
-                                       kept, count, sums);
-    });
-    kept.first[field_groups] = static_cast<std::uint32_t>(count);
+    GroupStartsWriter starts(kept.first);
+    for_groups_of(candidates.first,
+                  [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
+                                                    std::size_t end) HWY_ATTR {
+                      starts.begin(group, count);
+                      bound_local_group<shape, kind>(candidates, stretch, static_cast<float>(cut),
+                                                     first, end, kept, count, sums);
+                  });
+    starts.end(count);
     return sums;
 }
 
@@ -358,14 +363,16 @@ PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
     }
     PeakSums sums;
     std::size_t count = 0;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        if (kept != nullptr) kept->first[group] = static_cast<std::uint32_t>(count);
-        const std::size_t first = clusters.first[group], end = clusters.first[group + 1];
-        if (first == end) return;
-        bound_member_group<shape, kind>(field, bundle, middle, stretch, static_cast<float>(cut),
-                                        clusters, first, end, kept, count, sums);
-    });
-    if (kept != nullptr) kept->first[field_groups] = static_cast<std::uint32_t>(count);
+    GroupStarts none;
+    GroupStartsWriter starts(kept != nullptr ? kept->first : none);
+    for_groups_of(
+        clusters.first, [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
+                                                          std::size_t end) HWY_ATTR {
+            starts.begin(group, count);
+            bound_member_group<shape, kind>(field, bundle, middle, stretch, static_cast<float>(cut),
+                                            clusters, first, end, kept, count, sums);
+        });
+    starts.end(count);
     return sums;
 }
 

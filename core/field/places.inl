@@ -111,11 +111,9 @@ void enter_local(const Field& field, const Stretch& bundle, double middle,
                  const ActiveElements& active, LocalElements& near) {
     near.make_room(active.size());
     near.first = active.first;
-    for_all_groups([&]<Shape shape, KernelKind kind>(std::size_t group) HWY_ATTR {
-        const std::size_t first = active.first[group], end = active.first[group + 1];
-        if (first == end) return;
-        near_group<shape>(field, active, first, end, near);
-    });
+    for_groups_of(active.first,
+                  [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first, std::size_t end)
+                      HWY_ATTR { near_group<shape>(field, active, first, end, near); });
     place_local(field, bundle, middle, near);
 }
 

@@ -24,7 +24,7 @@ template <Shape shape>
 inline constexpr bool has_length = SkeletonOf<shape>::m_power == 1;
 
 template <Shape shape>
-inline constexpr bool tapers = has_taper<SkeletonOf<shape>>;
+inline constexpr bool tapers = SkeletonOf<shape>::is_taper;
 
 HWY_INLINE Reach<double> reach_of(const Stretch& s) {
     return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
@@ -109,11 +109,17 @@ HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<floa
     return e;
 }
 
-// Calls visit.operator()<shape, kernel>(group).
+// Calls visit.operator()<shape, kernel>(group, first, end) for the groups that have elements.
 template <class Visit>
-HWY_INLINE void for_all_groups(const Visit& visit) {
-    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR {
-        visit.template operator()<shape, kind>(group_of(shape, kind));
+HWY_INLINE void for_groups_of(const GroupStarts& starts, const Visit& visit) {
+    for_shapes([&]<Shape shape>() HWY_ATTR {
+        constexpr std::size_t of_shape = group_of(shape, KernelKind{});
+        if (starts[of_shape] == starts[of_shape + kernel_count]) return;
+        for_kernels<shape>([&]<Shape, KernelKind kind>() HWY_ATTR {
+            constexpr std::size_t group = group_of(shape, kind);
+            const std::size_t first = starts[group], end = starts[group + 1];
+            if (first != end) visit.template operator()<shape, kind>(group, first, end);
+        });
     });
 }
 

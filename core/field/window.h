@@ -23,7 +23,8 @@ struct StageBounds {
 // The elements that a stage adds up, sorted by group.
 template <class Real>
 struct StageEntries {
-    std::array<std::uint32_t, field_groups> count{};
+    std::array<std::uint32_t, field_groups> count{};  // of the groups that are present
+    std::uint64_t present = 0;                        // groups that have entries, one bit each
     // Longer than there are entries: the memory is kept.
     std::vector<BundleEntry<Real>> entry;
     std::vector<std::uint32_t> element;  // index into Field
@@ -32,7 +33,14 @@ struct StageEntries {
     [[nodiscard]] std::span<const std::uint32_t> elements() const { return {element.data(), size}; }
     void clear() {
         size = 0;
-        count.fill(0);
+        present = 0;
+    }
+    // The last so many entries are all of that group.
+    void end_group(std::size_t group, std::size_t entries) {
+        static_assert(field_groups <= 64);
+        if (entries == 0) return;
+        count[group] = static_cast<std::uint32_t>(entries);
+        present |= std::uint64_t{1} << group;
     }
     // For so many more.
     void make_room(std::size_t more) {

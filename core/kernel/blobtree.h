@@ -14,27 +14,14 @@
 
 namespace ivory {
 
-struct BlobTree {
+struct BlobTree : PolynomialKernel<BlobTree> {
     static constexpr std::string_view word = "blobtree";
     static constexpr std::string_view label = "BlobTree";
     static constexpr std::string_view formula = "(1 - q²)³";
     static constexpr std::string_view source = "Wyvill, Guy, Galin 1999 (Blender's metaballs)";
 
-    static constexpr bool ends = true;
     // 3 sqrt(s) (1 - s)^2 is greatest at s = 1/5: 48 / (25 sqrt 5) = 0.8587.
     static constexpr double greatest_slope = 3, greatest_curvature = 6, greatest_root_slope = 0.86;
-
-    static Interval<double> at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double k = plain(s);
-        return {std::max(kernel_detail::below(k), 0.0), std::min(kernel_detail::above(k), 1.0)};
-    }
-
-    static Interval<double> slope_at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double dk = -3 * (1 - s) * (1 - s);
-        return {kernel_detail::below(dk), std::min(kernel_detail::above(dk), 0.0)};
-    }
 
     // It falls to 0 at s = 1.
     static Interval<double> curvature_over(const Interval<double>&, double s_lo, double s_hi) {
@@ -43,6 +30,7 @@ struct BlobTree {
     }
 
     static double plain(double s) { return s >= 1 ? 0 : (1 - s) * (1 - s) * (1 - s); }
+    static double plain_slope(double s) { return -3 * (1 - s) * (1 - s); }
     static double touching_point(double slope) {  // -3 (1 - s)^2
         return 1 - std::sqrt(std::max(slope / -3, 0.0));
     }

@@ -34,6 +34,25 @@ inline double above(double x) { return x + std::abs(x) * slack + 0x1p-1070; }
 
 }  // namespace kernel_detail
 
+// What a kernel has in common that is a polynomial in s up to s = 1, and 0 beyond: K::plain and
+// K::plain_slope are k and k', 0 <= k <= 1 and k' <= 0, to fewer than ten roundings.
+template <class K>
+struct PolynomialKernel {
+    static constexpr bool ends = true;
+
+    static Interval<double> at(double s) {
+        if (s >= 1) return {0.0, 0.0};
+        const double k = K::plain(s);
+        return {std::max(kernel_detail::below(k), 0.0), std::min(kernel_detail::above(k), 1.0)};
+    }
+
+    static Interval<double> slope_at(double s) {
+        if (s >= 1) return {0.0, 0.0};
+        const double dk = K::plain_slope(s);
+        return {kernel_detail::below(dk), std::min(kernel_detail::above(dk), 0.0)};
+    }
+};
+
 // exp(-s) for the s >= 0 within `radius` of a double: 1 - r <= exp(-+r) <= 1 + r + r^2 for
 // r <= 1/4.
 inline Interval<double> exp_minus(double s, double radius) {

@@ -13,27 +13,14 @@
 
 namespace ivory {
 
-struct Murakami {
+struct Murakami : PolynomialKernel<Murakami> {
     static constexpr std::string_view word = "murakami";
     static constexpr std::string_view label = "Murakami";
     static constexpr std::string_view formula = "(1 - q²)²";
     static constexpr std::string_view source = "Murakami, Ichihara 1987 (POV-Ray's blob)";
 
-    static constexpr bool ends = true;
     // 2 sqrt(s) (1 - s) is greatest at s = 1/3: 4 / 3^(3/2) = 0.7698.
     static constexpr double greatest_slope = 2, greatest_curvature = 2, greatest_root_slope = 0.77;
-
-    static Interval<double> at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double k = plain(s);
-        return {std::max(kernel_detail::below(k), 0.0), std::min(kernel_detail::above(k), 1.0)};
-    }
-
-    static Interval<double> slope_at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double dk = -2 * (1 - s);
-        return {kernel_detail::below(dk), std::min(kernel_detail::above(dk), 0.0)};
-    }
 
     // It jumps at s = 1.
     static Interval<double> curvature_over(const Interval<double>&, double, double s_hi) {
@@ -41,6 +28,7 @@ struct Murakami {
     }
 
     static double plain(double s) { return s >= 1 ? 0 : (1 - s) * (1 - s); }
+    static double plain_slope(double s) { return -2 * (1 - s); }
     static double touching_point(double slope) { return 1 + 0.5 * slope; }  // -2 (1 - s)
     // 4 q (1 - s) falls from s = 1/3 on, 8 / 3^(3/2) there.
     static double steepest_beyond(double q) {

@@ -15,27 +15,14 @@
 
 namespace ivory {
 
-struct Wyvill {
+struct Wyvill : PolynomialKernel<Wyvill> {
     static constexpr std::string_view word = "wyvill";
     static constexpr std::string_view label = "Wyvill";
     static constexpr std::string_view formula = "1 - 4/9 q⁶ + 17/9 q⁴ - 22/9 q²";
     static constexpr std::string_view source = "Wyvill, McPheeters, Wyvill 1986 (soft objects)";
 
-    static constexpr bool ends = true;
     static constexpr double greatest_slope = 22.0 / 9, greatest_curvature = 34.0 / 9,
                             greatest_root_slope = 0.8;
-
-    static Interval<double> at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double k = plain(s);
-        return {std::max(kernel_detail::below(k), 0.0), std::min(kernel_detail::above(k), 1.0)};
-    }
-
-    static Interval<double> slope_at(double s) {
-        if (s >= 1) return {0.0, 0.0};
-        const double dk = -2 * (1 - s) * (11 - 6 * s) / 9;
-        return {kernel_detail::below(dk), std::min(kernel_detail::above(dk), 0.0)};
-    }
 
     // It falls up to s = 1, where it jumps.
     static Interval<double> curvature_over(const Interval<double>&, double s_lo, double s_hi) {
@@ -44,6 +31,7 @@ struct Wyvill {
     }
 
     static double plain(double s) { return s >= 1 ? 0 : (1 - s) * (1 - s) * (9 - 4 * s) / 9; }
+    static double plain_slope(double s) { return -2 * (1 - s) * (11 - 6 * s) / 9; }
     static double touching_point(double slope) {  // -2/9 (1 - s)(11 - 6 s)
         return (17 - std::sqrt(std::max(289 - 24 * (11 + 4.5 * slope), 0.0))) / 12;
     }

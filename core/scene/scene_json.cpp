@@ -275,7 +275,7 @@ void read_element(const Node& node, Element& element) {
     read_if_there(members, "color", element.color);
     read_if_there(members, "kernel", element.kernel);
     read_if_there(members, "strength", element.strength);
-    if constexpr (may_taper<S>) {
+    if constexpr (S::may_taper) {
         if (const auto width = members.optional("width")) read_widths(*width, 2, element);
     } else {
         read_if_there(members, "width", element.width);

@@ -8,12 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <variant>
 
 #include "core/interval/interval.h"
 #include "core/interval/moving_square.h"
 #include "core/interval/quick.h"
 #include "core/math/offset.h"
 #include "core/math/vec3.h"
+#include "core/shape/circle_along_ray.h"
+#include "core/shape/taper_along_ray.h"
 
 namespace ivory {
 
@@ -24,95 +29,23 @@ struct Piece {
     Interval<double> where;
 };
 
-// A circle of radius r about the axis n: with v the vector from the centre, h = n.v (linear in t)
-// and rho = |v - h n|, s = (rho - r)^2 + h^2. (The expanded form |v|^2 + r^2 - 2 r rho cancels near
-// the circle.) rho'' = gamma rho_0^2 / rho^3 >= 0, where rho_0 is the least rho on the line; so
-// rho' rises, and s'' = 2 |d|^2 - 2 r rho''. Where rho can be 0, s' jumps downward and s'' is
-// unbounded below.
-//
-// Filled, a disc: s = max(rho - r, 0)^2 + h^2, which is convex, with s'' = 2 h'^2 where rho < r and
-// 2 h'^2 <= s'' <= 2 |d|^2 beyond. s' does not jump.
-struct CircleAlongRay {
-    bool filled = false;
-    MovingSquare across;            // rho^2
-    Interval<double> least_across;  // rho_0^2, enclosed
-    double height = 0,
-           rise = 0;          // h(t) = height + (t - across.reference) rise, within across' errors
-    Interval<double> radius;  // r / w
-    Interval<double> curvature;  // 2 |d|^2 / w^2
+// A point, or a segment: s is the square of the piece that t lies in.
+struct SquaresAlongRay {
+    std::array<Piece, 3> pieces;
+    std::size_t count = 0;
 
-    struct At {
-        SquareAt square;  // of rho^2
-        Interval<double> rho, drho, h, s, ds;
-    };
-    struct Over {
-        Interval<double> s, ds, dds;
-    };
-
-    [[nodiscard]] At at(double t) const;
-    // Ranges over [t0, t1], t0 < t1, from the values at its ends.
-    [[nodiscard]] Over over(double t0, double t1, const At& at0, const At& at1) const;
-    // {t: |h(t)| <= most}, enclosed from outside.
-    [[nodiscard]] Interval<double> within_height(double most) const;
-
-  private:
-    [[nodiscard]] Interval<double> off_rim(const Interval<double>& rho) const;
-    [[nodiscard]] Interval<double> rho_bend(const Interval<double>& rho) const;
-    [[nodiscard]] Over over_filled(double t0, double t1, const At& at0, const At& at1) const;
+    void add(const Piece& piece) { pieces[count++] = piece; }
+    [[nodiscard]] std::span<const Piece> all() const { return {pieces.data(), count}; }
 };
 
-// A segment whose width tapers (core/shape/taper.h), in intervals throughout.
-struct TaperAlongRay {
-    using Vector = Vec3<Interval<double>>;
-
-    // The foot: where it may be.
-    struct Foot {
-        bool at_a = false, at_b = false;
-        Interval<double> between = Interval<double>::empty_set();  // of u
-    };
-    struct At {
-        Vector from_a;                   // a -> p(t)
-        Interval<double> wanted, rises;  // of (1): alpha w_a + A d, |M|^2 w_a + alpha d
-        Interval<double> s, ds;
-    };
-    struct Over {
-        Interval<double> s, ds, dds;
-    };
-
-    // False: numbers too large or too small.
-    [[nodiscard]] bool see(const Vec3d& from, const Vec3d& along, const Vec3d& end_a,
-                           const Vec3d& end_b, double at_a, double at_b,
-                           const Interval<double>& span);
-    [[nodiscard]] At at(double t) const;
-    // Ranges over [t0, t1], t0 < t1, from the values at its ends.
-    [[nodiscard]] Over over(double t0, double t1, const At& at0, const At& at1) const;
-
-  private:
-    [[nodiscard]] Foot foot(const Interval<double>& wanted, const Interval<double>& rises) const;
-    [[nodiscard]] Interval<double> slope(const Foot& foot, const Interval<double>& along) const;
-
-    Vec3d origin, direction, a;
-    Vector m;                                 // b - a
-    Interval<double> width_a, width_b, more;  // more: width_b - width_a
-    double least_width = 1;
-    Interval<double> speed_square, along, length_square;  // |d|^2, M.d, |M|^2
-};
+// Numbers too large or too small for the lemma: 0 <= k <= 1 is all that is known.
+struct UnboundedAlongRay {};
 
 // One skeleton seen from one ray, for t in a span.
 struct SkeletonAlongRay {
-    enum class Form : unsigned char {
-        squares,   // pieces[0 .. piece_count): s is the square of the piece that t lies in
-        circle,    // circle, or a disc
-        taper,     // taper
-        unbounded  // numbers too large or too small for the lemma: 0 <= k <= 1 is all that is known
-    };
-    Form form = Form::unbounded;
-    unsigned char piece_count = 0;
+    std::variant<UnboundedAlongRay, SquaresAlongRay, CircleAlongRay, TaperAlongRay> form;
     // s >= cut certainly holds on the span outside of this; empty: nowhere on the span is s <= cut.
     Interval<double> active = Interval<double>::entire();
-    std::array<Piece, 3> pieces;
-    CircleAlongRay circle;
-    TaperAlongRay taper;
 };
 
 // The ray that a skeleton is seen from.
@@ -246,9 +179,9 @@ inline Interval<double> sublevel(const MovingSquare& q, double cut) {
 // A point, or a skeleton that is within `extra_error` of one. False: not in the lemma's range.
 inline bool set_point(SkeletonAlongRay& e, const Relative& r, double extra_error,
                       const Interval<double>& span, double cut) {
-    e.form = SkeletonAlongRay::Form::squares;
-    e.piece_count = 1;
-    Piece& piece = e.pieces[0];
+    SquaresAlongRay& squares = e.form.emplace<SquaresAlongRay>();
+    squares.count = 1;
+    Piece& piece = squares.pieces[0];
     piece.square = from_point(r, span);
     if (extra_error > 0) {
         piece.square.eta += extra_error;

@@ -36,6 +36,7 @@ struct CircleSkeleton {
     // On the axis the direction to the nearest point jumps.
     static constexpr bool has_kinks = true;
     // m = n; parameter = r.
+    static constexpr bool may_taper = false, is_taper = false;
     static constexpr bool has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 
@@ -93,9 +94,7 @@ struct CircleSkeleton {
         if (skeleton.radius == 0) return set_point(e, r, 0, span, cut);
         const Vec3d n = unit(skeleton.b);
         const FromAxis axial = from_axis(r, n, span);
-        e.form = SkeletonAlongRay::Form::circle;
-        CircleAlongRay& c = e.circle;
-        c.filled = false;
+        CircleAlongRay& c = e.form.emplace<CircleAlongRay>();
         c.across = axial.across;
         c.height = axial.height;
         c.rise = axial.rise;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 #include <tuple>
+#include <variant>
 
 #include "core/math/direction.h"
 #include "core/shape/along_ray.h"
@@ -36,6 +37,7 @@ struct DiscSkeleton {
 
     static constexpr bool has_kinks = false;
     // m = n; parameter = r.
+    static constexpr bool may_taper = false, is_taper = false;
     static constexpr bool has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 
@@ -70,9 +72,10 @@ struct DiscSkeleton {
     static bool along_ray(const SkeletonColumns& skeleton, double width, const SeenFrom& ray,
                           SkeletonAlongRay& e) {
         const bool fits = CircleSkeleton::along_ray(skeleton, width, ray, e);
-        if (skeleton.radius == 0) return fits;
-        e.circle.filled = true;
-        e.active = intersection(e.active, e.circle.within_height(std::sqrt(ray.cut)));
+        if (auto* const circle = std::get_if<CircleAlongRay>(&e.form)) {  // not one of radius 0
+            circle->filled = true;
+            e.active = intersection(e.active, circle->within_height(std::sqrt(ray.cut)));
+        }
         return fits;
     }
 

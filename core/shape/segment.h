@@ -29,6 +29,8 @@ struct SegmentSkeleton {
 
     static constexpr bool has_kinks = false;
     // m = b - a; parameter = 1 / |m|^2, 0 where that is shorter than 1e-40 and stands for its end a.
+    // With a list of widths: core/shape/taper.h.
+    static constexpr bool may_taper = true, is_taper = false;
     static constexpr bool has_axis = true;
     static constexpr int m_power = 1, parameter_power = -2;
 
@@ -116,14 +118,13 @@ struct SegmentSkeleton {
         const bool last_possible = forward ? lambda.hi > 1 : lambda.lo < 0;
         const bool middle_possible = lambda.hi >= 0 && lambda.lo <= 1;
 
-        e.form = SkeletonAlongRay::Form::squares;
-        e.piece_count = 0;
+        SquaresAlongRay& squares = e.form.emplace<SquaresAlongRay>();
         bool fits = true;
         e.active = Interval<double>::empty_set();
         const auto add = [&](const MovingSquare& square, const Interval<double>& where,
                              double reach) {
             e.active = hull(e.active, intersection(sublevel(square, cut), where));
-            e.pieces[e.piece_count++] = {square, where};
+            squares.add({square, where});
             fits = fits && usable(square.kappa, reach + square.rho, mag(span));
         };
         const auto within = [&](double lo, double hi) {
@@ -137,14 +138,14 @@ struct SegmentSkeleton {
             const MovingSquare square = from_axis(from_a, axis, where).across;
             // A ray along the segment leaves no speed across it, which the lemma allows.
             e.active = hull(e.active, intersection(sublevel(square, cut), where));
-            e.pieces[e.piece_count++] = {square, where};
+            squares.add({square, where});
             fits =
                 fits && usable(from_a.direction_norm, from_a.offset_norm + square.rho, mag(span));
         }
         if (const auto where = within(leaves.lo, span.hi); last_possible && !is_empty(where)) {
             add(from_point(last, where), where, last.offset_norm);
         }
-        return fits && e.piece_count > 0;
+        return fits && squares.count > 0;
     }
 
     // `scale` = 1 / w; `start` + t `rate` leads from a to p(t), in widths.

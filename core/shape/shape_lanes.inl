@@ -228,19 +228,30 @@ namespace {
 template <Shape shape>
 using LanesOfShape = ShapeLanes<SkeletonOf<shape>>;
 
+template <class Visit, std::size_t... shape>
+HWY_INLINE void for_shapes(const Visit& visit, std::index_sequence<shape...>) {
+    (visit.template operator()<static_cast<Shape>(shape)>(), ...);
+}
 template <Shape shape, class Visit, std::size_t... kernel>
 HWY_INLINE void for_kernels(const Visit& visit, std::index_sequence<kernel...>) {
     (visit.template operator()<shape, static_cast<KernelKind>(kernel)>(), ...);
 }
-template <class Visit, std::size_t... shape>
-HWY_INLINE void for_shapes_and_kernels(const Visit& visit, std::index_sequence<shape...>) {
-    (for_kernels<static_cast<Shape>(shape)>(visit, std::make_index_sequence<kernel_count>()), ...);
-}
 
-// Calls visit.operator()<shape, kind>() for all of them, in the order of their groups.
+// Calls visit.operator()<shape>() for all that fields are made of.
+template <class Visit>
+HWY_INLINE void for_shapes(const Visit& visit) {
+    for_shapes(visit, std::make_index_sequence<field_shape_count>());
+}
+// Calls visit.operator()<shape, kind>() for all kernels; and for all of both, in the order of their
+// groups.
+template <Shape shape, class Visit>
+HWY_INLINE void for_kernels(const Visit& visit) {
+    for_kernels<shape>(visit, std::make_index_sequence<kernel_count>());
+}
 template <class Visit>
 HWY_INLINE void for_shapes_and_kernels(const Visit& visit) {
-    for_shapes_and_kernels(visit, std::make_index_sequence<field_shape_count>());
+    for_shapes([&]<Shape shape>() HWY_ATTR
+               __attribute__((always_inline)) { for_kernels<shape>(visit); });
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
                               double width) {
     { S::has_kinks } -> std::convertible_to<bool>;
     { S::has_axis } -> std::convertible_to<bool>;
+    { S::is_taper } -> std::convertible_to<bool>;
     { S::m_power } -> std::convertible_to<int>;
     { S::parameter_power } -> std::convertible_to<int>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
@@ -64,6 +65,7 @@ concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires
     { S::label } -> std::convertible_to<std::string_view>;     // in the viewer
     { S::distance } -> std::convertible_to<std::string_view>;  // the formula of d
     std::tuple_size<decltype(S::members())>::value;
+    { S::may_taper } -> std::convertible_to<bool>;  // its width may be a list
     { s.middle() } -> std::same_as<Vec3d>;
     { s.columns() } -> std::same_as<SkeletonColumns>;
 };
@@ -87,12 +89,6 @@ template <class Visit>
 constexpr decltype(auto) with_field_shape(Shape shape, const Visit& visit) {
     return with_type(FieldShapes{}, static_cast<std::size_t>(shape), visit);
 }
-
-// Whether the width of S may be a list.
-template <class S>
-inline constexpr bool may_taper = std::is_same_v<S, SegmentSkeleton>;
-template <class S>
-inline constexpr bool has_taper = std::is_same_v<S, TaperedSegment>;
 
 // Calls visit(member) for each member of S, in order.
 template <class S, class Visit>

@@ -8,10 +8,9 @@
 // decide. |p - c(u)| - q0 w(u) is convex in u for every q0: that is what lower bounds of q rest on.
 //
 // What the bounds on a bundle rest on, with w the least width, D = w q and kappa = |d| / |M|:
-//     D^2 - |p|^2 = min over u of (an affine function of p, where the widths are counted) is no
-//         infimum of affine functions, but w^2 |p - c|^2 / w(c)^2 has a second derivative of 2 at the
-//         most along a line, and so has their minimum: (1) of core/field/bundle_field.h holds of D,
-//         which changes by no more than p does;
+//     for each u, w^2 |p - c(u)|^2 / w(u)^2 has a second derivative of at most 2 along a line of
+//         speed 1; so has their minimum D^2, as far as that can fall: (1) of
+//         core/field/bundle_field.h holds of D, which changes by no more than p does;
 //     where kappa q < 1, along a line of speed 1,
 //         (D^2)'' / 2 = (w / w*)^2 - w^2 (m.v' + 2 (p - c).v' d / w*)^2 / (w* (|M|^2 w_a + alpha d))
 //     with w* = w(u*) and |M|^2 w_a + alpha d = |M|^2 w* (1 - kappa^2 q^2), so that
@@ -34,8 +33,8 @@ namespace ivory {
 // Not a skeleton of its own: what a field makes of a segment with two widths.
 struct TaperedSegment {
     static constexpr bool has_kinks = true;  // beyond kappa q = 1
-    static constexpr bool has_axis = true;   // m = b - a
-    static constexpr bool has_taper = true;
+    static constexpr bool is_taper = true;
+    static constexpr bool has_axis = true;  // m = b - a
     static constexpr int m_power = 1, parameter_power = 0;
 
     static SkeletonColumns columns(const SegmentSkeleton& segment, double at_a, double at_b) {
@@ -70,12 +69,30 @@ struct TaperedSegment {
         return {dot(from, from) / (widths * widths), away};
     }
 
-    static bool along_ray(const SkeletonColumns& c, double width, const SeenFrom& ray,
-                          SkeletonAlongRay& e);
+    static bool along_ray(const SkeletonColumns& c, double, const SeenFrom& ray,
+                          SkeletonAlongRay& e) {
+        using namespace along_ray_detail;
+        auto& taper = e.form.emplace<TaperAlongRay>();
+        if (!taper.see(ray.origin, ray.direction, c.a, c.b, c.width_a, c.width_b, ray.span)) {
+            return false;
+        }
+        // q is at least what it is for the ball around the segment, all of it as wide as its widest.
+        const Ball around = ball(c);
+        const double widest = std::max(c.width_a, c.width_b);
+        const Relative from = relative_to(around.center, widest, ray.origin, ray.direction);
+        const MovingSquare square = from_point(from, ray.span);
+        if (!usable(square.kappa, from.offset_norm + square.rho, mag(ray.span))) return false;
+        const double reach = (std::sqrt(ray.cut) + around.radius / widest) * (1 + 16 * u);
+        e.active = sublevel(square, reach * reach * (1 + 4 * u));
+        return true;
+    }
 
-    static void see(const SkeletonColumns& c, const natural::Span&, const natural::Vector& origin,
-                    const natural::Vector& start, const natural::Vector& rate,
-                    natural::RaySkeleton& e);
+    static void see(const SkeletonColumns& c, const natural::Span& scale, const natural::Vector&,
+                    const natural::Vector&, const natural::Vector&, natural::RaySkeleton& e) {
+        using namespace natural;
+        e.axis = times(scale, minus(vector(c.b), vector(c.a)));
+        e.taper_rate = quick::mul(scale, quick::sub(Span(c.width_b), Span(c.width_a)));
+    }
     template <class Number>
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return natural::taper_square(e, t);
@@ -241,7 +258,7 @@ struct ShapeLanes<TaperedSegment> {
                      is_wide = hn::Gt(cone, constant(d, least_straight));
         const V<Tag> steeper = hn::MulAdd(constant(d, 2), hn::Sqrt(square), one);
         const V<Tag> wide = hn::Max(cone, constant(d, least_straight));
-        const V<Tag> huge = constant(d, 1e18);
+        const V<Tag> huge = constant(d, 1e12);
         const V<Tag> by_q = hn::IfThenElse(
             is_low, hn::Div(widened, hn::Max(hn::Sub(one, square), constant(d, least_straight))),
             huge);
@@ -262,8 +279,12 @@ struct ShapeLanes<TaperedSegment> {
                 is_wide,
                 hn::Mul(turned, hn::Div(hn::Mul(hn::Add(one, e.taper_rate), widened), wide)),
                 huge));
-        return {hn::IfThenElse(hn::Or(is_low, is_wide), hn::Div(hn::Mul(of_foot, widened), e.size),
-                               hn::Neg(one)),
+        // Ends that coincide, or nearly, leave the foot open.
+        const M<Tag> has_length =
+            hn::Gt(e.size, constant(d, sizeof(hn::TFromD<Tag>) == sizeof(float) ? 1e-20 : 1e-150));
+        const V<Tag> size = hn::IfThenElse(has_length, e.size, one);
+        return {hn::IfThenElse(hn::And(has_length, hn::Or(is_low, is_wide)),
+                               hn::Div(hn::Mul(of_foot, widened), size), hn::Neg(one)),
                 outward};
     }
     template <class Tag>

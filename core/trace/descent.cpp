@@ -7,7 +7,6 @@ bool Descent::build(const Field& field, const ElementList& list, const Bundle& b
                     Cancellation* stop) {
     span_ = Interval<double>::empty_set();
     is_shared_ = false;
-    bundle_ = {.axis = bundle.axis, .spread = bundle.spread};
     open_.clear();
     if (!field_.build(field, list, bundle, tolerance, skips_windows, stop)) return false;
     if (list.certainly_empty || field.box.empty()) return true;

@@ -130,7 +130,6 @@ class Descent {
     [[nodiscard]] bool has_parts(const Piece& piece) const;
 
     BundleField field_;
-    BundlePart bundle_;
     Interval<double> span_ = Interval<double>::empty_set();
     std::span<const BundlePart> parts_;
     Directions rays_;

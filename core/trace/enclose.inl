@@ -95,7 +95,7 @@ HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
     const D d;
     V<D> lost[n];
     for_each_of<n>([&](auto half) HWY_ATTR { lost[half] = hn::Zero(d); });
-    for_groups(window.fine.count,
+    for_groups(window.fine,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first,
                                                             count, p, direction, value, lost);
@@ -153,7 +153,7 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
     });
     const Vec3v<F> near{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
     V<F> in_float = hn::Zero(narrow);
-    for_groups(window.fine_in_float.count,
+    for_groups(window.fine_in_float,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_float_group<shape, kind>(narrow, window.fine_in_float.entry.data() + first,
                                                 count, near, in_float);

@@ -39,22 +39,30 @@ HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std:
     }
 }
 
-// Calls visit.operator()<shape, kernel>(first, count) for each group that has entries.
-template <class Counts, class Visit>
-HWY_INLINE void for_groups(const Counts& counts, const Visit& visit) {
+// Calls visit.operator()<shape, kernel>(first, count) for each group that has entries: the groups of
+// a shape are asked for only where it has any, since this stands in the innermost loops.
+template <class Real, class Visit>
+HWY_INLINE void for_groups(const StageEntries<Real>& stage, const Visit& visit) {
+    const std::uint64_t present = stage.present;
     std::size_t first = 0;
-    for_shapes_and_kernels([&]<Shape shape, KernelKind kind>() HWY_ATTR
-                           __attribute__((always_inline)) {
-                               const std::uint32_t count = counts[group_of(shape, kind)];
-                               if (count != 0) visit.template operator()<shape, kind>(first, count);
-                               first += count;
-                           });
+    for_shapes([&]<Shape shape>() HWY_ATTR __attribute__((always_inline)) {
+        constexpr std::uint64_t all = ((std::uint64_t{1} << kernel_count) - 1)
+                                      << group_of(shape, KernelKind{});
+        if ((present & all) == 0) return;
+        for_kernels<shape>([&]<Shape, KernelKind kind>() HWY_ATTR __attribute__((always_inline)) {
+            constexpr std::size_t group = group_of(shape, kind);
+            if ((present >> group & 1) == 0) return;
+            const std::uint32_t count = stage.count[group];
+            visit.template operator()<shape, kind>(first, count);
+            first += count;
+        });
+    });
 }
 
 template <class Tag>
 HWY_INLINE void add(Tag d, const StageEntries<hn::TFromD<Tag>>& stage, const Vec3v<Tag>& p,
                     const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
-    for_groups(stage.count,
+    for_groups(stage,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum);
                });

@@ -4,8 +4,8 @@
 // bounds instead, f lies above a parabola, whose zero no first root comes after.
 //
 // Two forms of each: one ray's, rounded down, whatever the numbers; and, at the end of this file,
-// those of the packets' walk, to nearest and then shortened, which take a tenth of the time and
-// give up where numbers are not ordinary.
+// those of the packets' walk, to nearest and then shortened, which give up where numbers are not
+// ordinary.
 #ifndef IVORY_CORE_TRACE_SAFE_STEP_H
 #define IVORY_CORE_TRACE_SAFE_STEP_H
 

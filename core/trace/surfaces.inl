@@ -76,8 +76,8 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
         const V<D> zero = hn::Zero(d);
         SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         M<D> defined = hn::FirstN(d, N);
-        for_groups(window.fine.count, [&]<Shape shape, KernelKind kind>(
-                                          std::size_t group, std::uint32_t count) HWY_ATTR {
+        for_groups(window.fine, [&]<Shape shape, KernelKind kind>(std::size_t group,
+                                                                  std::uint32_t count) HWY_ATTR {
             add_surface<shape, kind>(d, window.fine.entry.data() + group,
                                      window.fine.element.data() + group, count, field, p, sum,
                                      defined);
@@ -172,8 +172,8 @@ SeenSurfaces look(const Window& window, const Field& field, double unit, double 
                          hn::MulAdd(t, rays.direction.z, rays.middle.z)};
         FloatSurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
-            for_groups(stage->count, [&]<Shape shape, KernelKind kind>(
-                                         std::size_t group, std::uint32_t count) HWY_ATTR {
+            for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t group,
+                                                                 std::uint32_t count) HWY_ATTR {
                 add_float_surface<shape, kind>(d, stage->entry.data() + group,
                                                stage->element.data() + group, count, field, p, sum);
             });

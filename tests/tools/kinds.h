@@ -14,9 +14,10 @@
 
 namespace ivory::tools {
 
+// Of fields: segments of two widths are one of their own.
 inline constexpr auto every_shape = [] {
-    std::array<Shape, shape_count> all{};
-    for (std::size_t n = 0; n < shape_count; ++n) all[n] = static_cast<Shape>(n);
+    std::array<Shape, field_shape_count> all{};
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Shape>(n);
     return all;
 }();
 
@@ -33,7 +34,7 @@ struct ElementKind {
 };
 
 inline constexpr auto every_kind = [] {
-    std::array<ElementKind, shape_count * kernel_count> all{};
+    std::array<ElementKind, every_shape.size() * kernel_count> all{};
     for (std::size_t n = 0; n < all.size(); ++n) {
         all[n] = {every_shape[n / kernel_count], every_kernel[n % kernel_count]};
     }
@@ -41,6 +42,7 @@ inline constexpr auto every_kind = [] {
 }();
 
 inline std::string word_of(Shape shape) {
+    if (shape == Shape::taper) return "taper";
     return std::string(shape_words[static_cast<std::size_t>(shape)]);
 }
 inline std::string word_of(KernelKind kernel) { return kernel_word(kernel); }
@@ -54,6 +56,7 @@ inline constexpr auto name_of_kind = [](const auto& info) { return word_of(info.
 
 // A skeleton of that shape, its members as they are by default.
 inline Skeleton skeleton_of(Shape shape) {
+    if (shape == Shape::taper) return SegmentSkeleton{};
     return with_shape(shape, []<class S>() { return Skeleton(S{}); });
 }
 

@@ -49,8 +49,7 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     element.width = std::exp(random.uniform(std::log(0.3), std::log(1.5)));
     element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
     element.visible = !random.chance(0.05);
-    if (recipe.tapers) {
-        element.skeleton = random_skeleton(Shape::segment, first, random);
+    if (recipe.only && recipe.only->shape == Shape::taper) {
         const double other = element.width * std::exp(random.uniform(-1.6, 1.6));
         element.widths = {element.width, other};
         element.width = std::min(element.width, other);

@@ -37,7 +37,6 @@ struct SceneRecipe {
     double shift = 0;       // added to every coordinate
     bool critical = false;  // elements in pairs p, -p around one centre, where the gradient is then
                             // 0, and T within 1e-3 .. 1e-14 of the field there
-    bool tapers = false;    // segments alone, with widths that go up to five times as far
     std::optional<ElementKind> only = {};  // nothing but such elements
 };
 

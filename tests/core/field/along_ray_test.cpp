@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/trace/clip.h"
@@ -49,6 +51,23 @@ struct View {
     }
 };
 
+std::span<const Piece> pieces_of(const ElementAlongRay& e) {
+    const auto* const squares = std::get_if<SquaresAlongRay>(&e.form);
+    return squares != nullptr ? squares->all() : std::span<const Piece>();
+}
+
+// Calls check(form) for one that has no pieces; whether it is one.
+template <class Check>
+bool without_pieces(const ElementAlongRay& e, const Check& check) {
+    return std::visit(
+        [&]<class Form>(const Form& form) {
+            constexpr bool is_whole = requires { form.at(0.0).s; };
+            if constexpr (is_whole) check(form);
+            return is_whole;
+        },
+        e.form);
+}
+
 // Places to look at: the ends, where pieces and the active part begin and end, the foot, others.
 std::vector<double> places(const View& view, Random& random) {
     const ElementAlongRay& e = view.along;
@@ -61,14 +80,13 @@ std::vector<double> places(const View& view, Random& random) {
         around(e.active.lo);
         around(e.active.hi);
     }
-    if (e.form == ElementAlongRay::Form::squares) {
-        for (std::size_t i = 0; i < e.piece_count; ++i) {
-            around(e.pieces[i].where.lo);
-            around(e.pieces[i].where.hi);
-            around(e.pieces[i].square.reference);
-        }
-    } else if (e.form == ElementAlongRay::Form::circle) {
-        around(e.circle.across.reference);
+    for (const Piece& piece : pieces_of(e)) {
+        around(piece.where.lo);
+        around(piece.where.hi);
+        around(piece.square.reference);
+    }
+    if (const auto* const circle = std::get_if<CircleAlongRay>(&e.form)) {
+        around(circle->across.reference);
     }
     for (int i = 0; i < 8; ++i) t.push_back(random.uniform(view.span.lo, view.span.hi));
     std::erase_if(t, [&](double x) { return !(view.span.lo <= x && x <= view.span.hi); });
@@ -123,20 +141,19 @@ class AlongRayOf : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(Each, AlongRayOf, testing::ValuesIn(tools::every_shape),
                          tools::name_of_kind);
 
-// What is enclosed at t is what some piece in force there says, or the circle.
+// What is enclosed at t is what some piece in force there says, or the whole.
 void check_at(const View& view, double t) {
     const ElementAlongRay& e = view.along;
     const Germ<RealInterval> exact = view.exact(t);
     SCOPED_TRACE("t = " + std::to_string(t));
-    if (e.form == ElementAlongRay::Form::circle) {
-        const CircleAlongRay::At at = e.circle.at(t);
+    const bool is_whole = without_pieces(e, [&](const auto& form) {
+        const auto at = form.at(t);
         ASSERT_TRUE(meets(at.s, exact.value)) << text(at.s) << to_string(exact.value.lo);
         ASSERT_TRUE(meets(at.ds, exact.slope)) << text(at.ds) << to_string(exact.slope.lo);
-        return;
-    }
+    });
+    if (is_whole) return;
     bool covered = false, held = false;
-    for (std::size_t i = 0; i < e.piece_count; ++i) {
-        const Piece& piece = e.pieces[i];
+    for (const Piece& piece : pieces_of(e)) {
         if (!contains(piece.where, t)) continue;
         covered = true;
         const SquareAt at = piece.square.at(t);
@@ -152,7 +169,7 @@ TEST_P(AlongRayOf, SquareAndSlopeHoldTheExactOnesAndPiecesCoverTheSpan) {
     for (const double scale : {1.0, 1e-6, 1e6}) {
         for_views(GetParam(), 21, {.elements = 4, .scale = scale},
                   [](const View& view, Random& random) {
-                      ASSERT_NE(view.along.form, ElementAlongRay::Form::unbounded);
+                      ASSERT_FALSE(std::holds_alternative<UnboundedAlongRay>(view.along.form));
                       for (const double t : places(view, random)) {
                           ASSERT_NO_FATAL_FAILURE(check_at(view, t));
                       }
@@ -199,7 +216,7 @@ TEST(AlongRay, LeastAndPeakHoldWhereTheRayComesNearerToACircleOutsideOfTheActive
     const Field field = compile(scene);
     ElementAlongRay e;
     along_ray(field, 0, {0, 0, -15}, {1, 0, 1}, {0.0, 20.0}, 1, e);
-    const double s = e.circle.at(12.5).s.hi;
+    const double s = std::get<CircleAlongRay>(e.form).at(12.5).s.hi;
     EXPECT_NEAR(s, 12.5, 1e-11);
     EXPECT_LE(e.least, s);
     EXPECT_GE(e.peak, std::exp(-s));
@@ -233,20 +250,18 @@ TEST_P(AlongRayOf, RangesOverAWindowHoldWhatTheEndsAndTheInsideAre) {
             std::sort(t.begin(), t.end());
             SCOPED_TRACE(text({t0, t1}));
             Interval<double> s = Interval<double>::empty_set(), ds = s, dds = s;
-            if (e.form == ElementAlongRay::Form::circle) {
-                const auto range = e.circle.over(t0, t1, e.circle.at(t0), e.circle.at(t1));
+            without_pieces(e, [&](const auto& form) {
+                const SquareRange range = form.over(t0, t1, form.at(t0), form.at(t1));
                 s = range.s, ds = range.ds, dds = range.dds;
-            } else {
-                for (std::size_t i = 0; i < e.piece_count; ++i) {
-                    const Piece& piece = e.pieces[i];
-                    const double from = std::max(t0, piece.where.lo);
-                    const double to = std::min(t1, piece.where.hi);
-                    if (!(from <= to)) continue;
-                    const SquareAt a = piece.square.at(from), b = piece.square.at(to);
-                    s = hull(s, piece.square.over(a, b));
-                    ds = hull(ds, Interval<double>(a.slope().lo, b.slope().hi));
-                    dds = hull(dds, piece.square.curvature());
-                }
+            });
+            for (const Piece& piece : pieces_of(e)) {
+                const double from = std::max(t0, piece.where.lo);
+                const double to = std::min(t1, piece.where.hi);
+                if (!(from <= to)) continue;
+                const SquareAt a = piece.square.at(from), b = piece.square.at(to);
+                s = hull(s, piece.square.over(a, b));
+                ds = hull(ds, Interval<double>(a.slope().lo, b.slope().hi));
+                dds = hull(dds, piece.square.curvature());
             }
             std::vector<Germ<RealInterval>> exact;
             for (const double x : t) exact.push_back(view.exact(x));
@@ -269,14 +284,17 @@ TEST_P(AlongRayOf, EnclosuresAreAFewUnitsWide) {
             const double s = view.exact(t).value.lo.to_double();
             if (s > 100) continue;
             const ElementAlongRay& e = view.along;
-            if (e.form == ElementAlongRay::Form::circle) {
+            if (const auto* const circle = std::get_if<CircleAlongRay>(&e.form)) {
                 // The distance errs by units of the sizes of circle and offset.
-                const double size = s + e.circle.radius.hi * e.circle.radius.hi + 1;
-                EXPECT_LE(width(e.circle.at(t).s), 1e-12 * size) << s;
+                const double size = s + circle->radius.hi * circle->radius.hi + 1;
+                EXPECT_LE(width(circle->at(t).s), 1e-12 * size) << s;
             }
-            for (std::size_t i = 0; i < e.piece_count; ++i) {
-                if (!contains(e.pieces[i].where, t)) continue;
-                const MovingSquare& square = e.pieces[i].square;
+            if (const auto* const taper = std::get_if<TaperAlongRay>(&e.form)) {
+                EXPECT_LE(width(taper->at(t).s), 1e-11 * (s + 1)) << s;
+            }
+            for (const Piece& piece : pieces_of(e)) {
+                if (!contains(piece.where, t)) continue;
+                const MovingSquare& square = piece.square;
                 const double reach = square.rho + square.kappa * std::abs(t - square.reference);
                 EXPECT_LE(square.at(t).s_radius, 1e-13 * (reach * reach + 1)) << s;
             }
@@ -290,7 +308,7 @@ TEST(AlongRay, NumbersBeyondTheLemmaGiveTheFormThatClaimsNothing) {
     const Field field = compile(scene);
     ElementAlongRay e;
     along_ray(field, 0, {0, 0, -5}, {0, 0, 1}, {0.0, 10.0}, 1, e);
-    EXPECT_EQ(e.form, ElementAlongRay::Form::unbounded);
+    EXPECT_TRUE(std::holds_alternative<UnboundedAlongRay>(e.form));
     EXPECT_EQ(e.active, Interval<double>::entire());
     EXPECT_EQ(e.least, 0);
     EXPECT_EQ(e.peak, 1);

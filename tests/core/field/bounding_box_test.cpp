@@ -126,7 +126,10 @@ TEST_P(BoundingBoxOf, BoxOfOneElementTouchesItsSolid) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Scene scene = tools::random_scene({.elements = 1, .only = GetParam()}, seed);
         scene.threshold = 0.5 * scene.elements[0].strength;
-        const double reach = q * scene.elements[0].width;
+        const std::vector<double>& widths = scene.elements[0].widths;
+        const double widest =
+            widths.empty() ? scene.elements[0].width : std::max(widths[0], widths[1]);
+        const double reach = q * widest;
         const Box3 box = compile(scene).reach_box;
         for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_NEAR(box.lo[k], extreme(scene.elements[0].skeleton, k, -1) - reach, 1e-12);

@@ -139,6 +139,8 @@ TEST(Refit, WhatItCannotFollowItLeaves) {
     for (const Shape shape : tools::every_shape) {
         if (shape == shape_of_skeleton(before.elements[i].skeleton)) continue;
         scene.elements[i].skeleton = tools::skeleton_of(shape);
+        scene.elements[i].widths.clear();
+        if (shape == Shape::taper) scene.elements[i].widths = {0.5, 1};
         expect_impossible(scene);
     }
     scene = before;

@@ -20,7 +20,7 @@ struct StageValue {
 };
 
 // Each shape's and each kernel's formula, once more: one that is new has to be added.
-static_assert(shape_count == 4 && kernel_count == 5);
+static_assert(field_shape_count == 5 && kernel_count == 5);
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
 // but for the sums.
@@ -33,6 +33,7 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
         const std::size_t i = stage.element[n];
         const Vec3<Real> v = p - Vec3<Real>{e.cx, e.cy, e.cz}, m{e.mx, e.my, e.mz};
         Vec3<Real> away = v;
+        Real widths = 1;  // at the nearest point, in the element's
         if (field.shape[i] == Shape::segment) {
             away = v - std::clamp(dot(v, m) * e.parameter, Real{0}, Real{1}) * m;
         } else if (field.shape[i] == Shape::circle) {
@@ -42,8 +43,15 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
             const Vec3<Real> across = v - dot(v, m) * m;
             const Real rho = std::sqrt(dot(across, across));
             away = rho > e.parameter ? v - (e.parameter / rho) * across : v - across;
+        } else if (field.shape[i] == Shape::taper) {
+            const Real rises = dot(m, m) + dot(v, m) * e.taper_rate;
+            const Real foot = rises > 0 ? (dot(v, m) + dot(v, v) * e.taper_rate) / rises : 1;
+            const Real u = std::clamp(foot, Real{0}, Real{1});
+            widths = 1 + u * e.taper_rate;
+            away = (1 / widths) * (v - u * m);
         }
         const Real s = dot(away, away) * e.inverse_square;
+        away = (1 / widths) * away;
         Real k = 0, dk = 0;
         if (field.kernel[i] == KernelKind::blinn) {
             k = dk = std::exp2(-s);

@@ -93,7 +93,8 @@ class IsolateOf : public testing::TestWithParam<tools::ElementKind> {};
 INSTANTIATE_TEST_SUITE_P(Each, IsolateOf, testing::ValuesIn(tools::every_kind),
                          tools::name_of_kind);
 
-// Straight towards the nearest place of any skeleton the distance falls as t grows.
+// Straight towards the nearest place of any skeleton the distance falls as t grows. Of tapers along
+// their axis: beyond their broad end, where their width is that end's.
 TEST_P(IsolateOf, SurfaceOfOneElementIsWhereItsKernelIsAtTheThreshold) {
     const std::uint64_t first = tools::announced_seed(75);
     for (const double threshold : {0.05, 0.3, 0.6, 0.9, 0.999}) {
@@ -105,15 +106,25 @@ TEST_P(IsolateOf, SurfaceOfOneElementIsWhereItsKernelIsAtTheThreshold) {
             Element& element = scene.elements[0];
             element.strength = 1;
             Random random(seed);
-            const Vec3d origin = random.in_cube(6);
-            const Vec3d to = tools::nearest_place(element.skeleton, origin) - origin;
+            Vec3d origin = random.in_cube(6), to;
+            double width = element.width;  // at the nearest place
+            if (GetParam().shape == Shape::taper) {
+                const auto& [a, b] = std::get<SegmentSkeleton>(element.skeleton);
+                const bool narrows = element.widths[0] > element.widths[1];
+                width = std::max(element.widths[0], element.widths[1]);
+                const Vec3d broad = narrows ? a : b;
+                origin = broad + random.uniform(2, 20) * width * unit(broad - (narrows ? b : a));
+                to = broad - origin;
+            } else {
+                to = tools::nearest_place(element.skeleton, origin) - origin;
+            }
             const double distance = std::sqrt(dot(to, to));
-            if (distance < 1.1 * q * element.width) continue;
+            if (distance < 1.1 * q * width) continue;
             const Isolation answer = isolate(scene, {origin, (1 / distance) * to});
             ASSERT_EQ(answer.status, Status::hit);
             EXPECT_LE(answer.t.hi - answer.t.lo, tolerance * element.width);
-            EXPECT_NEAR(midpoint(answer.t), distance - q * element.width,
-                        tolerance * element.width + 1e-12);
+            EXPECT_NEAR(midpoint(answer.t), distance - q * width,
+                        tolerance * element.width + 1e-12 * width);
             EXPECT_EQ(isolate(scene, {origin, (-1 / distance) * to}).status, Status::miss);
         }
     }

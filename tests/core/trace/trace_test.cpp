@@ -112,8 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"shifted", {.elements = 8, .shift = 1e6}, 1e-9},
                     Case{"small", {.elements = 8, .scale = 1e-6}, 1e-9},
                     Case{"large", {.elements = 8, .scale = 1e6}, 1e-9},
-                    Case{"critical", {.elements = 8, .critical = true}, 1e-9},
-                    Case{"tapers", {.elements = 8, .tapers = true}, 1e-9}),
+                    Case{"critical", {.elements = 8, .critical = true}, 1e-9}),
     [](const auto& test_case) { return test_case.param.name; });
 
 std::vector<Case> one_kind_alone() {

@@ -1,4 +1,9 @@
-#include "core/shape/along_ray.h"
+#include "core/shape/circle_along_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/interval/quick.h"
 
 namespace ivory {
 namespace {
@@ -81,21 +86,8 @@ CircleAlongRay::Over CircleAlongRay::over(double t0, double t1, const At& at0,
     const Interval<double> elapsed{0.0, up_to(t1, t0)};
 
     range.ds = quick::scale(2, quick::add(quick::mul(off, drho), quick::mul(h, dh)));
-    if (range.dds.lo > -infinity<double>) {
-        const Interval<double> gain = quick::mul(range.dds, elapsed);
-        range.ds = intersection(range.ds,
-                                intersection(quick::add(at0.ds, gain), quick::sub(at1.ds, gain)));
-    }
     range.s = quick::add(quick::sqr(off), quick::sqr(h));
-    if (range.ds.lo >= 0) {
-        range.s = intersection(range.s, Interval<double>(at0.s.lo, at1.s.hi));
-    } else if (range.ds.hi <= 0) {
-        range.s = intersection(range.s, Interval<double>(at1.s.lo, at0.s.hi));
-    } else {
-        const Interval<double> gain = quick::mul(range.ds, elapsed);
-        range.s =
-            intersection(range.s, intersection(quick::add(at0.s, gain), quick::sub(at1.s, gain)));
-    }
+    narrow_by_ends(range, elapsed, at0.s, at0.ds, at1.s, at1.ds);
     return range;
 }
 

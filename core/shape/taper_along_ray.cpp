@@ -1,4 +1,9 @@
-#include "core/shape/taper.h"
+#include "core/shape/taper_along_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/offset.h"
 
 namespace ivory {
 namespace {
@@ -128,72 +133,9 @@ TaperAlongRay::Over TaperAlongRay::over(double t0, double t1, const At& at0, con
     if (!(rises.lo > 0) && where.at_a && where.at_b) range.dds.lo = -infinity<double>;
 
     range.ds = slope(where, inward);
-    if (range.dds.lo > -infinity<double>) {
-        const I gain = range.dds * elapsed;
-        range.ds = intersection(range.ds, intersection(at0.ds + gain, at1.ds - gain));
-    }
-    if (is_empty(range.ds)) range.ds = hull(at0.ds, at1.ds);
-    if (range.ds.lo >= 0) {
-        range.s = {at0.s.lo, at1.s.hi};
-    } else if (range.ds.hi <= 0) {
-        range.s = {at1.s.lo, at0.s.hi};
-    } else {
-        const I gain = range.ds * elapsed;
-        range.s = intersection(at0.s + gain, at1.s - gain);
-        range.s.lo = std::max(range.s.lo, 0.0);
-    }
+    range.s = {0.0, infinity<double>};
+    narrow_by_ends(range, elapsed, at0.s, at0.ds, at1.s, at1.ds);
     return range;
-}
-
-bool TaperedSegment::along_ray(const SkeletonColumns& c, double, const SeenFrom& ray,
-                               SkeletonAlongRay& e) {
-    using namespace along_ray_detail;
-    e.form = SkeletonAlongRay::Form::taper;
-    if (!e.taper.see(ray.origin, ray.direction, c.a, c.b, c.width_a, c.width_b, ray.span)) {
-        return false;
-    }
-    // q is at least what it is for the ball around the segment, all of it as wide as its widest.
-    const Ball around = ball(c);
-    const double widest = std::max(c.width_a, c.width_b);
-    const Relative from = relative_to(around.center, widest, ray.origin, ray.direction);
-    const MovingSquare square = from_point(from, ray.span);
-    if (!usable(square.kappa, from.offset_norm + square.rho, mag(ray.span))) return false;
-    const double reach = (std::sqrt(ray.cut) + around.radius / widest) * (1 + 16 * u_round);
-    e.active = sublevel(square, reach * reach * (1 + 4 * u_round));
-    return true;
-}
-
-void TaperedSegment::see(const SkeletonColumns& c, const natural::Span& scale,
-                         const natural::Vector&, const natural::Vector&, const natural::Vector&,
-                         natural::RaySkeleton& e) {
-    using namespace natural;
-    e.axis = times(scale, minus(vector(c.b), vector(c.a)));
-    e.taper_rate = quick::mul(scale, quick::sub(Span(c.width_b), Span(c.width_a)));
-}
-
-natural::SquareAndSlope natural::taper_over(const RaySkeleton& e, const Span& t) {
-    const auto at = [&](const Linear& l) { return quick::add(l.start, quick::mul(t, l.rate)); };
-    const natural::Vector v{at(e.from.x), at(e.from.y), at(e.from.z)};
-    const natural::Vector d{e.from.x.rate, e.from.y.rate, e.from.z.rate};
-    const Span alpha = inner(v, e.axis),
-               reach = quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
-    const Span length_square = inner(e.axis, e.axis);
-    const Span wanted = quick::add(alpha, quick::mul(reach, e.taper_rate));
-    const Span rises = quick::add(length_square, quick::mul(alpha, e.taper_rate));
-    Span u{0.0, 1.0};
-    if (rises.lo > 0) {
-        const Span foot = quick::div(wanted, rises);
-        u = {std::min(std::max(foot.lo, 0.0), 1.0), std::min(std::max(foot.hi, 0.0), 1.0)};
-    } else if (rises.hi < 0) {
-        u = Span(1.0);  // beyond the apex the broader end is nearest
-    }
-    const natural::Vector from = minus(v, times(u, e.axis));
-    const Span width = quick::add(Span(1.0), quick::mul(u, e.taper_rate));
-    const Span share = quick::div(Span(1.0), quick::sqr(width));
-    return {quick::mul(
-                quick::add(quick::add(quick::sqr(from.x), quick::sqr(from.y)), quick::sqr(from.z)),
-                share),
-            quick::mul(quick::scale(2, inner(from, d)), share)};
 }
 
 }  // namespace ivory
