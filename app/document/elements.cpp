@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <set>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <variant>
@@ -92,15 +93,69 @@ Scene with_name(Scene scene, std::size_t element, const std::string& name) {
     return scene;
 }
 
+namespace {
+
+// visit(member, list) of the lists of places of the element's skeleton.
+template <class Visit>
+void for_places(Element& element, const Visit& visit) {
+    std::visit(
+        [&]<class S>(S& skeleton) {
+            for_members<S>([&]<class Value>(const Member<S, Value>& member) {
+                if constexpr (std::is_same_v<Value, std::vector<Vec3d>>) {
+                    visit(member, skeleton.*member.value);
+                }
+            });
+        },
+        element.skeleton);
+}
+
+std::ptrdiff_t after(std::size_t i) { return static_cast<std::ptrdiff_t>(i) + 1; }
+
+}  // namespace
+
+void insert_place(Element& element, std::size_t i) {
+    for_places(element, [&](const auto&, std::vector<Vec3d>& places) {
+        if (i >= places.size()) return;
+        const bool is_last = i + 1 == places.size();
+        const Vec3d& here = places[i];
+        const Vec3d& other = places[is_last ? i - 1 : i + 1];
+        const Vec3d place = is_last ? here + (here - other) : 0.5 * here + 0.5 * other;
+        std::vector<double>& widths = element.widths;
+        if (widths.size() == places.size()) {
+            const double width = is_last ? widths[i] : 0.5 * (widths[i] + widths[i + 1]);
+            widths.insert(widths.begin() + after(i), width);
+        }
+        places.insert(places.begin() + after(i), place);
+    });
+}
+
+void remove_place(Element& element, std::size_t i) {
+    for_places(element, [&](const auto& member, std::vector<Vec3d>& places) {
+        if (i >= places.size() || places.size() <= member.least) return;
+        std::vector<double>& widths = element.widths;
+        if (widths.size() == places.size()) {
+            widths.erase(widths.begin() + after(i) - 1);
+            element.width = *std::min_element(widths.begin(), widths.end());
+        }
+        places.erase(places.begin() + after(i) - 1);
+    });
+}
+
 Box3 box_around(const Element& element) {
     return with_shape(shape_of_skeleton(element.skeleton), [&]<class S>() {
-        const SkeletonColumns columns = std::get<S>(element.skeleton).columns();
+        const S& skeleton = std::get<S>(element.skeleton);
+        const double width = element.widths.empty()
+                                 ? element.width
+                                 : *std::max_element(element.widths.begin(), element.widths.end());
         Box3 box;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            Vec3d up;
-            up[axis] = 1;
-            box.lo[axis] = S::farthest(columns, {}, -up)[axis] - element.width;
-            box.hi[axis] = S::farthest(columns, {}, up)[axis] + element.width;
+        for (std::size_t part = 0; part < parts_of(skeleton); ++part) {
+            const SkeletonColumns columns = part_of(skeleton, part);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                Vec3d up;
+                up[axis] = 1;
+                box.lo[axis] = std::min(box.lo[axis], S::farthest(columns, {}, -up)[axis] - width);
+                box.hi[axis] = std::max(box.hi[axis], S::farthest(columns, {}, up)[axis] + width);
+            }
         }
         return box;
     });

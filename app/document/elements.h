@@ -22,6 +22,12 @@ namespace ivory {
 // element has that name.
 [[nodiscard]] Scene with_name(Scene scene, std::size_t element, const std::string& name);
 
+// A place more in the element's list of them, after number i: half way to the next, or as far beyond the
+// last one as the one before it is from there; with a width between its neighbours'. And one less.
+// Elements without such a list stay as they are.
+void insert_place(Element& element, std::size_t i);
+void remove_place(Element& element, std::size_t i);
+
 // The skeleton and one width around it.
 [[nodiscard]] Box3 box_around(const Element& element);
 

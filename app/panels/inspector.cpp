@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "app/document/elements.h"
 #include "app/panels/actions.h"
 #include "app/panels/buttons.h"
 #include "app/panels/color_field.h"
@@ -20,6 +22,7 @@
 #include "app/panels/theme.h"
 #include "app/panels/typed_number.h"
 #include "app/shape/shapes.h"
+#include "app/shape/widths.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -61,14 +64,67 @@ void draw_member(ViewerState& state, std::size_t element, const Member<S, double
         });
 }
 
+// A table: a row for each place, its number first; the row that was clicked is the one that the
+// buttons below are about.
+template <class S>
+void draw_member(ViewerState& state, std::size_t element,
+                 const Member<S, std::vector<Vec3d>>& member, const std::string& name,
+                 double step) {
+    constexpr std::size_t most_rows = 8;  // in sight at once
+    const std::vector<Vec3d> places =
+        std::get<S>(state.document.scene().elements[element].skeleton).*member.value;
+    std::size_t& current = state.panels.place;
+    current = std::min(current, places.size() - 1);
+    const std::string id = "element." + std::string(member.key);
+    const float row = ImGui::GetFrameHeightWithSpacing();
+    const float height = row * static_cast<float>(std::min(places.size(), most_rows));
+    ImGui::NewLine();
+    ImGui::BeginChild(id.c_str(), {0, height}, false,
+                      ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoNavFocus);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(places.size()), row);
+    while (clipper.Step()) {
+        for (auto i = static_cast<std::size_t>(clipper.DisplayStart);
+             i < static_cast<std::size_t>(clipper.DisplayEnd); ++i) {
+            const std::string number = std::to_string(i + 1), row_id = id + "." + number;
+            if (text_button(state, row_id, number.c_str(), px(state, 34), true, i == current)) {
+                current = i;
+            }
+            ImGui::SameLine(0, px(state, 4));
+            vector_fields(state, row_id, "Move point " + number + " of " + name, places[i], step,
+                          [=](Scene& scene, const Vec3d& changed) {
+                              Element& to = scene.elements[element];
+                              (std::get<S>(to.skeleton).*member.value)[i] = changed;
+                          });
+        }
+    }
+    ImGui::EndChild();
+    const std::string number = std::to_string(current + 1);
+    const float half = std::floor(0.5f * (field_width() - px(state, 4)));
+    if (text_button(state, id + ".insert", ("Insert after " + number).c_str(), half)) {
+        edit_scene(state, "Insert a point into " + name,
+                   [&](Scene& scene) { insert_place(scene.elements[element], current); });
+        ++current;
+    }
+    ImGui::SameLine(0, px(state, 4));
+    if (text_button(state, id + ".remove", ("Remove " + number).c_str(), half,
+                    places.size() > member.least)) {
+        edit_scene(state, "Remove point " + number + " of " + name,
+                   [&](Scene& scene) { remove_place(scene.elements[element], current); });
+    }
+}
+
 void draw_skeleton(ViewerState& state, std::size_t element, const std::string& name) {
     const double step = step_in_scene(state);
     const Shape shape = shape_of_skeleton(state.document.scene().elements[element].skeleton);
     with_shape(shape, [&]<class S>() {
         for_members<S>([&](const auto& member) {
             label(state, member.label.data());  // a literal: it ends with a 0
-            draw_member(state, element, member,
-                        change_name(grip_kind(member.kind), part_name(member), name), step);
+            const std::string what =
+                member.kind == MemberKind::places
+                    ? name
+                    : change_name(grip_kind(member.kind), part_name(member), name);
+            draw_member(state, element, member, what, step);
         });
     });
 }
@@ -147,21 +203,36 @@ void draw_kernel(ViewerState& state, std::size_t element, const std::string& nam
     ImGui::NewLine();
 }
 
-// One for all of it, or one for each end.
+// One for all of it, or one for each end or point; what can taper has a switch beside it.
 void draw_widths(ViewerState& state, std::size_t element, const std::string& name) {
     const Element now = state.document.scene().elements[element];
     const double step = step_for(now.width);
-    if (now.widths.empty()) {
+    const bool tapers = !now.widths.empty();
+    const auto draw_switch = [&] {
+        if (toggle(state, "element.tapers", "Tapers", tapers)) {
+            edit_scene(state, (tapers ? "One width for " : "Taper ") + name,
+                       [&](Scene& scene) { set_tapers(scene.elements[element], !tapers); });
+        }
+    };
+    if (!tapers) {
         label(state, "Width");
+        const float room = ImGui::GetFrameHeight() + px(state, 6) +
+                           ImGui::CalcTextSize("Tapers").x + px(state, 12);
         number_field(state,
                      {.id = "element.width",
                       .what = "Change width of " + name,
                       .value = now.width,
                       .step = step,
                       .least = step},
-                     field_width(),
+                     can_taper(now) ? field_width() - room : field_width(),
                      [=](Scene& scene, double width) { scene.elements[element].width = width; });
+        if (!can_taper(now)) return;
+        ImGui::SameLine(0, px(state, 12));
+        draw_switch();
+        return;
     }
+    label(state, "Widths");
+    draw_switch();
     for (std::size_t i = 0; i < now.widths.size(); ++i) {
         const std::string number = std::to_string(i + 1), text = "Width " + number;
         label(state, text.c_str());

@@ -97,6 +97,7 @@ struct PanelMemory {
         return question || file_question || browser.mode != FileBrowser::Mode::closed;
     }
 
+    std::size_t place = 0;  // of a list of places: the one that buttons insert after and remove
     std::optional<std::size_t> row_shown;  // the selection that the list last scrolled to
 
     // Derived from a scene, kept until there is another one.

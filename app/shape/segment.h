@@ -13,6 +13,7 @@
 #include "app/shape/moving.h"
 #include "app/shape/outlines.h"
 #include "app/shape/shape_in_hand.h"
+#include "app/shape/widths.h"
 #include "core/scene/scene.h"
 #include "core/shape/segment.h"
 
@@ -30,15 +31,19 @@ struct ShapeInHand<SegmentSkeleton> {
                 {tidy(at.x + size, exponent), at.y, at.z}};
     }
 
-    // `a`, `b` and `middle`
-    static std::vector<Grip> grips(const Element& element, const HandView&) {
+    // `a`, `b` and `middle`, and of tapers `width 1` and `width 2`
+    static std::vector<Grip> grips(const Element& element, const HandView& view) {
         std::vector<Grip> grips = place_grips(of(element));
         grips.push_back(whole_grip("middle", of(element).middle()));
+        add_width_grips(element, view, chain(element), {"a", "b"}, grips);
         return grips;
     }
     static bool move(Element& element, std::string_view handle, const HandView& view,
                      const HandleMotion& motion) {
         auto& segment = std::get<SegmentSkeleton>(element.skeleton);
+        if (const auto width = width_named(element, handle)) {
+            return move_width(element, *width, view, chain(element), motion);
+        }
         if (Vec3d* const end = place_named(segment, handle)) return move_place(*end, view, motion);
         return move_all(std::array{std::ref(segment.a), std::ref(segment.b)}, segment.middle(),
                         view, motion);
@@ -50,23 +55,21 @@ struct ShapeInHand<SegmentSkeleton> {
     }
     static std::vector<PictureLine> outline(const Projection& view, const Element& element,
                                             double widths) {
-        const std::array at = ends(element);
-        return hull_outline(view, std::array{Ball{of(element).a, widths * at[0]},
-                                             Ball{of(element).b, widths * at[1]}});
+        return hull_outline(view, std::array{Ball{of(element).a, widths * width_at(element, 0)},
+                                             Ball{of(element).b, widths * width_at(element, 1)}});
     }
     static void cover(const Element& element, double widths, std::vector<Ball>& balls) {
         const SegmentSkeleton& segment = of(element);
         const Vec3d along = segment.b - segment.a;
         cover_curve(
-            std::sqrt(dot(along, along)), widths * std::max(ends(element)[0], ends(element)[1]),
+            std::sqrt(dot(along, along)),
+            widths * std::max(width_at(element, 0), width_at(element, 1)),
             [&](double x) { return segment.a + x * along; }, balls);
     }
 
   private:
-    // The widths at both ends.
-    static std::array<double, 2> ends(const Element& element) {
-        if (element.widths.empty()) return {element.width, element.width};
-        return {element.widths.front(), element.widths.back()};
+    static std::array<Vec3d, 2> chain(const Element& element) {
+        return {of(element).a, of(element).b};
     }
     static const SegmentSkeleton& of(const Element& element) {
         return std::get<SegmentSkeleton>(element.skeleton);

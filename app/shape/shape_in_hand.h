@@ -97,6 +97,7 @@ constexpr Stroke disc(float x, float y, float radius) {
 constexpr GripKind grip_kind(MemberKind kind) {
     switch (kind) {
         case MemberKind::place:
+        case MemberKind::places:
             return GripKind::place;
         case MemberKind::direction:
             return GripKind::direction;

@@ -14,6 +14,7 @@
 #include "app/shape/circle.h"
 #include "app/shape/disc.h"
 #include "app/shape/point.h"
+#include "app/shape/polyline.h"
 #include "app/shape/segment.h"
 #include "app/shape/shape_in_hand.h"
 #include "core/scene/scene.h"

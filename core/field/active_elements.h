@@ -20,17 +20,19 @@ struct ActiveElements {
     std::vector<double> least;    // lower bound of s on the stretch
     std::vector<double> most;     // upper bound of s, but for points
     std::vector<double> peak;     // upper bound of k
+    std::vector<double> whole;    // of what is joined: that of all parts of the element
     std::vector<double> inverse;  // after `bend`; circle: upper bound of 1 / rho; < 0: rho may be 0
 
     static constexpr std::size_t room = 16;
 
-    [[nodiscard]] std::size_t size() const { return first[field_groups]; }
+    [[nodiscard]] std::size_t size() const { return first.size(); }
     // A sorted list, of which nothing more is known; `groups`: where they begin, as in
     // Field::first.
     void take(const GroupStarts& groups, std::span<const std::uint32_t> elements);
     // The members of clusters.
     void take_members(const Clusters& clusters, const ActiveElements& of);
-    // Element i of those, with its bounds, as the last one: there has to be room.
+    // Element i of those, with its bounds, as the last one: there has to be room, and its group has to
+    // have begun.
     void take(const LocalElements& near, std::size_t i, double unit);
     // Keeps nothing.
     void make_room(std::size_t count);

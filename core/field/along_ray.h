@@ -17,6 +17,7 @@ struct ElementAlongRay : SkeletonAlongRay {
     double least = 0;                   // a lower bound of s over the span
     double peak = 1;                    // an upper bound of k over the span
     Interval<double> beyond{0.0, 0.0};  // of strength k(s) outside of `active`
+    bool joins = false;                 // the next one is another part of the same element
 };
 
 // Element i of the field along origin + t direction, t in the finite `span`; the largest component

@@ -31,11 +31,15 @@ double box_distance(const Box3& a, const Box3& b, double width) {
 // An upper bound of f over a box: every positive element at its least distance, estimated by that
 // of its skeleton's box; the negative ones carve nothing.
 bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, const Box3& box) {
-    double sum = 0;
+    double sum = 0, of_parts = 0;  // the greatest of those of one element
     for (std::size_t i = 0; i < field.size(); ++i) {
         if (field.strength[i] < 0) continue;
         const double q = box_distance(skeletons[i], box, field.greatest_width_of(i));
-        sum += field.strength[i] * kernel_at(field.kernel[i], q * q * (1 - 4 * u)).hi;
+        of_parts = std::max(of_parts,
+                            field.strength[i] * kernel_at(field.kernel[i], q * q * (1 - 4 * u)).hi);
+        if (field.joins_next(i)) continue;
+        sum += of_parts;
+        of_parts = 0;
         if (sum >= field.threshold) return false;
     }
     return sum * (1 + (static_cast<double>(field.size()) + 4) * 2 * u) < field.threshold;
@@ -44,8 +48,11 @@ bool certainly_outside(const Field& field, const std::vector<Box3>& skeletons, c
 }  // namespace
 
 std::size_t count_positive(const Field& field) {
-    return static_cast<std::size_t>(std::count_if(field.strength.begin(), field.strength.end(),
-                                                  [](double b) { return b > 0; }));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        count += field.strength[i] > 0 && !field.joins_next(i);
+    }
+    return count;
 }
 
 namespace {
@@ -115,7 +122,7 @@ Box3 box_of_reach(const Field& field) {
     const std::size_t positive = count_positive(field);
     Box3 box;
     for (std::size_t group = 0; group < field_groups; ++group) {
-        const std::size_t first = field.first[group], end = field.first[group + 1];
+        const auto [first, end] = field.first.of(group);
         if (first == end) continue;
         const auto strengths = field.strength.begin();
         const auto strongest = static_cast<std::size_t>(

@@ -50,7 +50,8 @@ void put_member(const Field& field, std::size_t i, const Vec3d& center, LocalEle
             std::min(field.parameter[i] * unit_factor<S::parameter_power>(field.unit), 1e30));
     });
     members.length[i] = narrow(field.length[i] * per_unit);
-    if (field.shape[i] == Shape::taper) {
+    members.source[i] = static_cast<std::int32_t>(field.source[i]);
+    if (is_taper(field.shape[i])) {
         members.taper_rate[i] =
             narrow((field.width_b[i] - field.width_a[i]) * field.inverse_width[i]);
     }
@@ -74,7 +75,10 @@ void fit(const Field& field, std::size_t cluster, Clusters& clusters) {
     for (std::size_t i = first; i < end; ++i) {
         const Vec3d middle = ball_of(field, i).center;
         box.include({middle, middle});
-        (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+        // of the parts of one element, side by side, only one counts
+        if (i == first || !field.joins_next(i - 1)) {
+            (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+        }
         widest = std::max(widest, field.greatest_width_of(i));
     }
     const Vec3d center = 0.5 * box.lo + 0.5 * box.hi;
@@ -97,14 +101,15 @@ Clusters clusters_of(const Field& field, int threads) {
     Clusters clusters;
     if (!field.compact || field.size() < least_clustered) return clusters;
     for (std::size_t group = 0; group < field_groups; ++group) {
-        clusters.first_of_group[group] = static_cast<std::uint32_t>(clusters.first.size());
-        for (std::uint32_t first = field.first[group]; first < field.first[group + 1];
-             first += cluster_size) {
+        if (!field.first.has(group)) continue;
+        const auto [begin, end] = field.first.range(group);
+        clusters.first_of_group.begin(group, clusters.first.size());
+        for (std::uint32_t first = begin; first < end; first += cluster_size) {
             clusters.first.push_back(first);
         }
     }
     const std::size_t count = clusters.first.size();
-    clusters.first_of_group[field_groups] = static_cast<std::uint32_t>(count);
+    clusters.first_of_group.end(count);
     clusters.first.push_back(static_cast<std::uint32_t>(field.size()));
     for (auto* column : {&clusters.x, &clusters.y, &clusters.z, &clusters.radius, &clusters.above,
                          &clusters.below, &clusters.inverse_square}) {

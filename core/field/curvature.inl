@@ -6,7 +6,7 @@
 #define IVORY_CORE_FIELD_CURVATURE_INL
 #endif
 
-#include "core/field/seen.inl"
+#include "core/field/joined.inl"
 
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
@@ -59,6 +59,37 @@ HWY_INLINE void add_up(const BendLanes<Tag>& lanes, CurvatureSums& sums) {
     sums.kinked_slope += sum_of(lanes.kinked_slope);
 }
 
+// The greatest of each element's parts, lane by lane. A kinked part's slope counts beside them.
+template <class Tag>
+class JoinedBends {
+  public:
+    // Of lanes whose next one is of the same element where a bit is set.
+    void add(Tag d, const BendLanes<Tag>& lanes, std::size_t count, std::uint32_t joins) {
+        alignas(64) hn::TFromD<Tag> of_lane[3][hn::MaxLanes(Tag())];
+        hn::Store(lanes.rise, d, of_lane[0]);
+        hn::Store(lanes.fall, d, of_lane[1]);
+        hn::Store(lanes.kinked_slope, d, of_lane[2]);
+        for (std::size_t k = 0; k < count; ++k) {
+            most_.rise = std::max(most_.rise, double{of_lane[0][k]});
+            most_.fall = std::max(most_.fall, double{of_lane[1][k]});
+            most_.kinked_slope = std::max(most_.kinked_slope, double{of_lane[2][k]});
+            if ((joins >> k & 1) != 0) continue;
+            sums_.rise += most_.rise;
+            sums_.fall += most_.fall;
+            sums_.kinked_slope += most_.kinked_slope;
+            most_ = {};
+        }
+    }
+    void add_to(CurvatureSums& sums) const {
+        sums.rise += sums_.rise;
+        sums.fall += sums_.fall;
+        sums.kinked_slope += sums_.kinked_slope;
+    }
+
+  private:
+    CurvatureSums most_, sums_;
+};
+
 template <Shape shape, KernelKind kind>
 void bend_group(const Field& field, const Stretch& stretch, double scale, ActiveElements& active,
                 std::size_t first, std::size_t end, CurvatureSums& sums) {
@@ -66,6 +97,7 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
     const I di;
     const Reach<double> reach = reach_of(stretch);
     BendLanes<D> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    JoinedBends<D> bends;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const auto e =
             seen_in_field<shape>(field, stretch, scale, hn::LoadU(di, &active.element[i]));
@@ -74,7 +106,15 @@ void bend_group(const Field& field, const Stretch& stretch, double scale, Active
                             hn::LoadU(d, &active.most[i]), hn::LoadU(d, &active.peak[i]), lanes);
         // of elements that are no circles 0, those of the next group follow
         hn::StoreU(inverse, d, &active.inverse[i]);
+        if constexpr (joined<shape>) {
+            const std::size_t count = std::min(hn::Lanes(d), end - i);
+            bends.add(d, lanes, count, joins_of(i, end, count, [&](std::size_t k) {
+                          return field.source[static_cast<std::size_t>(active.element[k])];
+                      }));
+            lanes = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        }
     }
+    bends.add_to(sums);
     add_up(lanes, sums);
 }
 
@@ -93,13 +133,21 @@ void bound_curvature_local_group(LocalElements& near, const Reach<float>& reach,
                                  std::size_t end, CurvatureSums& sums) {
     const F d;
     BendLanes<F> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    JoinedBends<F> bends;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const auto e = seen_local<shape>(near, reach, i);
         const V<F> inverse =
             add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &near.least[i]),
                             hn::LoadU(d, &near.most[i]), hn::LoadU(d, &near.peak[i]), lanes);
         hn::StoreU(inverse, d, &near.inverse[i]);
+        if constexpr (joined<shape>) {
+            const std::size_t count = std::min(hn::Lanes(d), end - i);
+            bends.add(d, lanes, count,
+                      joins_of(i, end, count, [&](std::size_t k) { return near.source[k]; }));
+            lanes = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        }
     }
+    bends.add_to(sums);
     add_up(lanes, sums);
 }
 

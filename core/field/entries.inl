@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/field/joined.inl"
 #include "core/field/places.inl"
 #include "core/field/window.h"
 
@@ -42,6 +43,7 @@ struct Arrivals {
     Seen<Tag, shape> e;
     Vec3v<Tag> place;                                  // c - M
     V<Tag> inverse_width, least, most, peak, inverse;  // most: not of points
+    V<Tag> whole;  // the greatest peak of all parts of the element
 };
 
 // The greatest sqrt(s) on the stretch: no place of it is farther from M than H.
@@ -77,11 +79,13 @@ struct FieldArrivals {
                 hn::LoadU(d, &active.least[i]),
                 hn::LoadU(d, &active.most[i]),
                 hn::LoadU(d, &active.peak[i]),
-                hn::LoadU(d, &active.inverse[i])};
+                hn::LoadU(d, &active.inverse[i]),
+                hn::LoadU(d, joined<shape> ? &active.whole[i] : &active.peak[i])};
     }
     [[nodiscard]] std::uint32_t element(std::size_t i) const {
         return static_cast<std::uint32_t>(active.element[i]);
     }
+    [[nodiscard]] std::uint32_t source(std::size_t i) const { return field.source[element(i)]; }
 };
 
 // From elements in float; `middle` is the window's, relative to the same place.
@@ -103,11 +107,13 @@ struct LocalArrivals {
                 hn::LoadU(d, &near.least[i]),
                 hn::LoadU(d, &near.most[i]),
                 hn::LoadU(d, &near.peak[i]),
-                hn::LoadU(d, &near.inverse[i])};
+                hn::LoadU(d, &near.inverse[i]),
+                hn::LoadU(d, joined<shape> ? &near.whole[i] : &near.peak[i])};
     }
     [[nodiscard]] std::uint32_t element(std::size_t i) const {
         return static_cast<std::uint32_t>(near.element[i]);
     }
+    [[nodiscard]] std::int32_t source(std::size_t i) const { return near.source[i]; }
     // Those of i .. that the bits name join others.
     void leave(std::size_t i, std::uint32_t bits, double unit, ActiveElements& others) const {
         for (; bits != 0; bits &= bits - 1) {
@@ -154,7 +160,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const Seen<Tag, shape>& e = arrivals.e;
         const M<Tag> kinked = hn::Lt(arrivals.inverse, zero);
         const V<Tag> strength = hn::Abs(e.strength);
-        const V<Tag> value = hn::Mul(hn::Mul(strength, arrivals.peak), widened);
+        const V<Tag> value = hn::Mul(hn::Mul(strength, arrivals.whole), widened);
         const V<Tag> per_length =
             hn::Mul(hn::Mul(hn::Add(widened, widened), strength), arrivals.inverse_width);
         const V<Tag> whole =
@@ -230,7 +236,17 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             0);
         V<Tag> taper_rate = zero;
         if constexpr (tapers<shape>) taper_rate = e.taper_rate;
-        put(e.strength, hn::IfThenZeroElse(kinked, full), taper_rate, zero, 1);
+        V<Tag> joins = zero;
+        if constexpr (joined<shape>) {
+            alignas(64) hn::TFromD<Tag> of_lane[lanes_at_most] = {};
+            const std::uint32_t bits =
+                joins_of(i, end, N, [&](std::size_t k) { return source.source(k); });
+            for (std::size_t k = 0; k < N; ++k) {
+                of_lane[k] = static_cast<hn::TFromD<Tag>>(bits >> k & 1);
+            }
+            joins = hn::Load(d, of_lane);
+        }
+        put(e.strength, hn::IfThenZeroElse(kinked, full), taper_rate, joins, 1);
         if constexpr (has_axis<shape>) {
             put(hn::Mul(e.m.x, m_scale), hn::Mul(e.m.y, m_scale), hn::Mul(e.m.z, m_scale),
                 parameter, 2);
@@ -326,7 +342,8 @@ StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretc
         .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
         .least_rho = std::sqrt(double{least_square<float>}) * more};
     GroupStarts none;
-    GroupStartsWriter starts(strong.others != nullptr ? strong.others->first : none);
+    GroupStarts& starts = strong.others != nullptr ? strong.others->first : none;
+    starts.clear();
     for_groups_of(near.first, [&]<Shape shape, KernelKind kind>(
                                   std::size_t group, std::size_t first, std::size_t end) HWY_ATTR {
         if (strong.others != nullptr) starts.begin(group, strong.others->size());

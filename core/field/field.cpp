@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 
 #include "core/field/bounding_box.h"
 #include "core/math/parallel.h"
@@ -43,25 +44,43 @@ void make_room(Field& field, std::size_t count) {
     field.source.resize(count);
 }
 
-SkeletonColumns columns_of(const Element& element) {
-    if (field_shape_of(element) == Shape::taper) {
-        return TaperedSegment::columns(std::get<SegmentSkeleton>(element.skeleton),
-                                       element.widths.front(), element.widths.back());
-    }
-    return std::visit([](const auto& skeleton) { return skeleton.columns(); }, element.skeleton);
+std::size_t parts_of(const Element& element) {
+    return std::visit([](const auto& skeleton) { return ivory::parts_of(skeleton); },
+                      element.skeleton);
 }
 
-// All that an element says by itself, but for its colour.
-void put(Field& field, std::size_t i, const Element& element) {
-    const auto [a, b, m, radius, length, parameter, width_a, width_b] = columns_of(element);
+SkeletonColumns columns_of(const Element& element, std::size_t part) {
+    return std::visit(
+        [&]<class S>(const S& skeleton) {
+            if constexpr (std::is_same_v<S, SegmentSkeleton>) {
+                if (!element.widths.empty()) {
+                    return TaperedSegment::columns(skeleton, element.widths[0], element.widths[1]);
+                }
+            } else if constexpr (std::is_same_v<S, PolylineSkeleton>) {
+                if (!element.widths.empty()) {
+                    return TaperedSegment::columns(skeleton.segment(part), element.widths[part],
+                                                   element.widths[part + 1]);
+                }
+            }
+            return part_of(skeleton, part);
+        },
+        element.skeleton);
+}
+
+// All that a part of an element says by itself, but for its colour.
+void put(Field& field, std::size_t i, const Element& element, std::size_t part) {
+    const auto [a, b, m, radius, length, parameter, width_a, width_b] = columns_of(element, part);
+    const bool tapers = !element.widths.empty();
+    const double width = tapers ? std::min(width_a, width_b) : element.width;
     field.shape[i] = field_shape_of(element);
-    if (field.shape[i] == Shape::taper) {
+    if (tapers) {
         field.width_a[i] = width_a;
         field.width_b[i] = width_b;
+        field.width_of_all[i] = element.width;
     }
     field.kernel[i] = element.kernel;
     field.strength[i] = element.strength;
-    field.width[i] = element.width;
+    field.width[i] = width;
     field.ax[i] = a.x;
     field.ay[i] = a.y;
     field.az[i] = a.z;
@@ -74,8 +93,8 @@ void put(Field& field, std::size_t i, const Element& element) {
     field.mz[i] = m.z;
     field.parameter[i] = parameter;
     field.length[i] = length;
-    field.inverse_width[i] = 1 / element.width;
-    field.inverse_square[i] = 1 / (element.width * element.width);
+    field.inverse_width[i] = 1 / width;
+    field.inverse_square[i] = 1 / (width * width);
 }
 
 void put_color(Field& field, std::size_t i, const Color& color) {
@@ -158,34 +177,41 @@ Field compile(const Scene& scene, int threads) {
     Field field;
     field.threshold = scene.threshold;
     std::array<std::vector<std::uint32_t>, field_groups> groups;
-    std::size_t visible = 0;
+    std::size_t visible = 0;  // parts
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         const Element& element = scene.elements[i];
         if (!element.visible) continue;
         const Shape shape = field_shape_of(element);
         groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
-        ++visible;
+        visible += parts_of(element);
     }
     make_room(field, visible);
     const bool tapers = std::any_of(scene.elements.begin(), scene.elements.end(),
                                     [](const Element& e) { return !e.widths.empty(); });
     if (tapers) {
-        field.width_a.resize(visible);
-        field.width_b.resize(visible);
+        for (auto* column : {&field.width_a, &field.width_b, &field.width_of_all}) {
+            column->resize(visible);
+        }
     }
+    std::vector<std::uint32_t> part(visible);
     std::size_t count = 0;
     for (std::size_t group = 0; group < field_groups; ++group) {
-        field.first[group] = static_cast<std::uint32_t>(count);
+        if (groups[group].empty()) continue;
+        field.first.begin(group, count);
         if (visible >= least_clustered) sort_by_place(scene, threads, groups[group]);
-        std::copy(groups[group].begin(), groups[group].end(),
-                  field.source.begin() + static_cast<std::ptrdiff_t>(count));
-        count += groups[group].size();
+        for (const std::uint32_t element : groups[group]) {
+            const std::size_t parts = parts_of(scene.elements[element]);
+            for (std::uint32_t k = 0; k < parts; ++k) {
+                field.source[count] = element;
+                part[count++] = k;
+            }
+        }
     }
-    field.first[field_groups] = static_cast<std::uint32_t>(count);
+    field.first.end(count);
     for_ranges(visible, threads, least_range, [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
             const Element& element = scene.elements[field.source[i]];
-            put(field, i, element);
+            put(field, i, element, part[i]);
             put_color(field, i, element.color);
         }
     });
@@ -208,6 +234,7 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
         if (old.kernel != element.kernel || field_shape_of(old) != field_shape_of(element)) {
             return Refit::impossible;
         }
+        if (parts_of(old) != parts_of(element)) return Refit::impossible;
         if (same_numbers(old, element) && old.color == element.color) continue;
         changed.push_back(static_cast<std::uint32_t>(i));
         if (field.clusters.empty()) continue;
@@ -219,10 +246,12 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
 
     field.threshold = after.threshold;
     std::vector<std::uint32_t> indices;  // in the field
+    std::size_t part = 0;
     for (std::size_t i = 0; i < field.size() && !changed.empty(); ++i) {
         const std::uint32_t source = field.source[i];
         if (!std::binary_search(changed.begin(), changed.end(), source)) continue;
-        put(field, i, after.elements[source]);
+        part = i > 0 && field.source[i - 1] == source ? part + 1 : 0;
+        put(field, i, after.elements[source], part);
         put_color(field, i, after.elements[source].color);
         indices.push_back(static_cast<std::uint32_t>(i));
     }
@@ -233,8 +262,13 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
     const auto floats_before = as_floats();
     sum_up(field);
     if (as_floats() == floats_before) {
+        constexpr std::uint32_t none = ~std::uint32_t{0};
+        std::uint32_t fitted = none;  // parts of an element share clusters
         for (const std::uint32_t i : indices) {
-            if (!field.clusters.empty()) fit(field, field.clusters.of(i), field.clusters);
+            if (field.clusters.empty()) break;
+            const std::uint32_t cluster = field.clusters.of(i);
+            if (cluster != fitted) fit(field, cluster, field.clusters);
+            fitted = cluster;
         }
     } else {
         field.clusters = clusters_of(field, 1);

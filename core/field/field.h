@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/field/clusters.h"
@@ -17,7 +18,9 @@ namespace ivory {
 
 // Visible elements only, sorted by group; within a group in file order, but where there are
 // clusters by their places (core/field/clusters.h). The doubles are those of the scene, unchanged:
-// every proof is about them.
+// every proof is about them. An element of several parts (core/shape/joined.h) stands as these, one
+// after the other: what is called an element here is one of them, whose F is the element's where it
+// is the nearest.
 struct Field {
     double threshold = 0;    // T
     double least_width = 0;  // the least w_i; 1 where there is no element
@@ -41,9 +44,11 @@ struct Field {
     std::vector<double> ax, ay, az;  // SkeletonColumns::a, and so on
     std::vector<double> bx, by, bz;
     std::vector<double> radius;
-    std::vector<double> width_a, width_b;  // of tapers; none where there are none
-    std::vector<Color> color;              // linear RGB
-    std::vector<std::uint32_t> source;     // index in Scene::elements
+    // Of tapers: SkeletonColumns::width_a and so on, and the least width of the whole element; none
+    // where there are no tapers.
+    std::vector<double> width_a, width_b, width_of_all;
+    std::vector<Color> color;           // linear RGB
+    std::vector<std::uint32_t> source;  // index in Scene::elements
     GroupStarts first{};
     // The s = q^2 beyond which element i counts as nothing and joins the rest that is kept as an
     // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
@@ -72,7 +77,7 @@ struct Field {
     [[nodiscard]] Vec3d b(std::size_t i) const { return {bx[i], by[i], bz[i]}; }
     [[nodiscard]] SkeletonColumns columns(std::size_t i) const {
         SkeletonColumns c{a(i), b(i), {mx[i], my[i], mz[i]}, radius[i], length[i], parameter[i]};
-        if (shape[i] == Shape::taper) {
+        if (is_taper(shape[i])) {
             c.width_a = width_a[i];
             c.width_b = width_b[i];
         }
@@ -80,9 +85,30 @@ struct Field {
     }
     // Of a taper `width` is the least.
     [[nodiscard]] double greatest_width_of(std::size_t i) const {
-        return shape[i] == Shape::taper ? std::max(width_a[i], width_b[i]) : width[i];
+        return is_taper(shape[i]) ? std::max(width_a[i], width_b[i]) : width[i];
+    }
+    // What a text calls the width of the scene's element that i is of.
+    [[nodiscard]] double width_of_element(std::size_t i) const {
+        return is_taper(shape[i]) ? width_of_all[i] : width[i];
+    }
+    // i + 1 is another part of the same.
+    [[nodiscard]] bool joins_next(std::size_t i) const {
+        return is_joined(shape[i]) && i + 1 < size() && source[i + 1] == source[i];
     }
 };
+
+// Calls visit(parts) for each element of the scene that a list, sorted, names parts of: a span of these.
+template <class Visit>
+void for_elements(const Field& field, std::span<const std::uint32_t> list, const Visit& visit) {
+    for (std::size_t first = 0; first < list.size();) {
+        std::size_t end = first + 1;
+        if (is_joined(field.shape[list[first]])) {
+            while (end < list.size() && field.source[list[end]] == field.source[list[first]]) ++end;
+        }
+        visit(list.subspan(first, end - first));
+        first = end;
+    }
+}
 
 // Does not throw (but for memory); the scene has been validated by its reader. The field is the
 // same for any number of threads.

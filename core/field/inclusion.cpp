@@ -62,6 +62,19 @@ Terms parabola(KernelKind kernel, const MovingSquare& square, double peak, doubl
     });
 }
 
+// Of two parts of one element: the greater k. Where one is below the other all along, it has no say;
+// else it may be either that k' and k'' are of (core/shape/joined.h).
+Terms greater(const Terms& a, const Terms& b) {
+    if (a.value.hi < b.value.lo) return b;
+    if (b.value.hi < a.value.lo) return a;
+    const auto most = [](const Interval<double>& x, const Interval<double>& y) {
+        return Interval<double>(std::max(x.lo, y.lo), std::max(x.hi, y.hi));
+    };
+    return {most(a.left, b.left),   most(a.right, b.right),
+            most(a.value, b.value), hull(a.left_slope, b.left_slope),
+            hull(a.slope, b.slope), hull(a.curvature, b.curvature)};
+}
+
 Terms hull(const Terms& a, const Terms& b) {
     return {hull(a.left, b.left),   hull(a.right, b.right),
             hull(a.value, b.value), hull(a.left_slope, b.left_slope),
@@ -171,6 +184,7 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
     rest.add(1, left_out);
     peaks.add(1, left_out);
     peaks.add(-1, Interval<double>(threshold_));
+    std::uint32_t last = 0;  // of those that are kept
     for (const std::uint32_t i : list.elements) {
         ElementAlongRay& element = elements_.emplace_back();
         along_ray(field, i, origin, direction, span, field.cut[i], element);
@@ -190,8 +204,19 @@ void FieldAlongRay::build(const Field& field, const ElementList& list, const Vec
             elements_.pop_back();
             continue;
         }
-        magnitude_ += std::abs(element.strength) * element.peak;
-        if (element.strength > 0) peaks.add(element.strength, {0.0, element.peak});
+        if (is_joined(field.shape[i]) && elements_.size() > 1 &&
+            field.source[i] == field.source[last]) {
+            elements_[elements_.size() - 2].joins = true;
+        }
+        last = i;
+    }
+    double peak = 0;  // of the parts so far of an element
+    for (const ElementAlongRay& element : elements_) {
+        peak = std::max(peak, element.peak);
+        if (element.joins) continue;
+        magnitude_ += std::abs(element.strength) * peak;
+        if (element.strength > 0) peaks.add(element.strength, {0.0, peak});
+        peak = 0;
     }
     rest_ = rest.finish(list.elements.size() + 1);
     peaks_ = peaks.finish(list.elements.size() + 2).hi;
@@ -201,12 +226,20 @@ Enclosure FieldAlongRay::over(double t0, double t1) const {
     Sum left, right, value, left_slope, slope, curvature, rest;
     rest.add(1, rest_);
     rest.add(-1, Interval<double>(threshold_));
+    Terms parts;  // those of an element so far that are near
+    bool has_parts = false;
     for (const ElementAlongRay& e : elements_) {
-        if (e.active.hi < t0 || e.active.lo > t1) {
-            rest.add(1, e.beyond);
-            continue;
+        const bool is_far = e.active.hi < t0 || e.active.lo > t1;
+        if (is_far) rest.add(1, e.beyond);
+        if (is_far && !has_parts) continue;
+        if (!is_far) {
+            const Terms part = element_over(e, t0, t1);
+            parts = has_parts ? greater(parts, part) : part;
+            has_parts = true;
         }
-        const Terms k = element_over(e, t0, t1);
+        if (e.joins) continue;
+        const Terms& k = parts;
+        has_parts = false;
         left.add(e.strength, k.left);
         right.add(e.strength, k.right);
         value.add(e.strength, k.value);
@@ -228,12 +261,19 @@ Interval<double> FieldAlongRay::at(double t) const {
     Sum value, rest;
     rest.add(1, rest_);
     rest.add(-1, Interval<double>(threshold_));
+    Interval<double> parts = Interval<double>::empty_set();  // the greatest of an element so far
     for (const ElementAlongRay& e : elements_) {
         if (e.active.hi < t || e.active.lo > t) {
             rest.add(1, e.beyond);
         } else {
-            value.add(e.strength, element_at(e, t));
+            const Interval<double> k = element_at(e, t);
+            parts = is_empty(parts)
+                        ? k
+                        : Interval<double>(std::max(parts.lo, k.lo), std::max(parts.hi, k.hi));
         }
+        if (e.joins) continue;
+        if (!is_empty(parts)) value.add(e.strength, parts);
+        parts = Interval<double>::empty_set();
     }
     const std::size_t terms = elements_.size() + 2;
     return value.finish(terms) + rest.finish(terms);

@@ -19,7 +19,8 @@ namespace ivory {
 //     f(t) <= left.hi + left_slope.hi x + curvature.hi x^2 / 2,
 //     f(t) <= left.hi + slope.hi x,
 // and likewise from below. slope and curvature are those of g; a downward jump of g' leaves
-// curvature.lo = -inf, an upward one curvature.hi = +inf.
+// curvature.lo = -inf, an upward one curvature.hi = +inf, unless it is from one part of an element to
+// another (core/shape/joined.h): left_slope and curvature are of all parts that may be the nearest.
 struct Enclosure {
     Interval<double> left, right, value;
     Interval<double> left_slope, slope, curvature;

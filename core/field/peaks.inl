@@ -10,7 +10,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/field/seen.inl"
+#include "core/field/joined.inl"
 
 #ifndef IVORY_CORE_FIELD_PEAKS_TABLES
 #define IVORY_CORE_FIELD_PEAKS_TABLES
@@ -133,6 +133,7 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
     const I di;
     const std::size_t N = hn::Lanes(d);
     const Reach<double> reach = reach_of(stretch);
+    const std::size_t kept_before = count;
     PeakLanes<D> peaks;
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
@@ -145,8 +146,11 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         const V<D> peak = LanesOf<kind>::peak(d, least);
         const V<D> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), constant(more));
         // not a number: kept
-        const M<D> keep = hn::AndNot(hn::Le(value, constant(cut)), valid);
-        peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
+        M<D> keep = valid;
+        if constexpr (!joined<shape>) {
+            keep = hn::AndNot(hn::Le(value, constant(cut)), valid);
+            peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
+        }
         const Kept<D> lanes(d, keep);
         lanes.put(di, index, &kept.element[count]);
         lanes.put(d, least, &kept.least[count]);
@@ -159,6 +163,22 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
         count += lanes.count();
     }
     peaks.add_to(sums);
+    if constexpr (joined<shape>) {
+        const auto element = [&](std::size_t i) {
+            return static_cast<std::size_t>(kept.element[i]);
+        };
+        count = join_parts(
+            kept, kept_before, count, cut, more,
+            [&](std::size_t i) { return field.strength[element(i)] * scale; },
+            [&](std::size_t i) { return field.source[element(i)]; },
+            [&](std::size_t from, std::size_t to) {
+                kept.element[to] = kept.element[from];
+                kept.least[to] = kept.least[from];
+                kept.most[to] = kept.most[from];
+                kept.peak[to] = kept.peak[from];
+            },
+            sums);
+    }
 }
 
 PeakSums bound(const Field& field, const Stretch& stretch, double scale, double cut,
@@ -166,7 +186,8 @@ PeakSums bound(const Field& field, const Stretch& stretch, double scale, double 
     kept.make_room(candidates.size());
     PeakSums sums;
     std::size_t count = 0;
-    GroupStartsWriter starts(kept.first);
+    GroupStarts& starts = kept.first;
+    starts.clear();
     for_groups_of(candidates.first,
                   [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
                                                     std::size_t end) HWY_ATTR {
@@ -222,7 +243,8 @@ PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale
     kept.make_room(candidates.size());
     PeakSums sums;
     std::size_t count = 0;
-    GroupStartsWriter starts(kept.first);
+    GroupStarts& starts = kept.first;
+    starts.clear();
     for_groups_of(candidates.first,
                   [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
                                                     std::size_t end) HWY_ATTR {
@@ -251,8 +273,11 @@ HWY_INLINE void bound_local_lanes(const LocalElements& candidates, std::size_t f
     const V<F> peak = LanesOf<kind>::peak(d, least);
     const V<F> value = hn::Mul(hn::Mul(hn::Abs(e.strength), peak), widened);
     // not a number: kept
-    const M<F> keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
-    peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
+    M<F> keep = valid;
+    if (!joined<shape> || kept == nullptr) {  // without a list parts are added up, which bounds too
+        keep = hn::AndNot(hn::Le(value, hn::Set(d, cut)), valid);
+        peaks.add(keep, hn::AndNot(keep, valid), e.strength, value, d);
+    }
     if (kept == nullptr) return;
     const Kept<F> lanes(d, keep);
     if (lanes.count() == 0) return;
@@ -279,7 +304,28 @@ HWY_INLINE void bound_local_lanes(const LocalElements& candidates, std::size_t f
     put(least, kept->least);
     put(peak, kept->peak);
     lanes.put(di, hn::LoadU(di, &candidates.element[first]), &kept->element[count]);
+    if constexpr (joined<shape>) {
+        lanes.put(di, hn::LoadU(di, &candidates.source[first]), &kept->source[count]);
+    }
     count += lanes.count();
+}
+
+void join_parts(LocalElements& kept, std::size_t first, double cut, std::size_t& count,
+                PeakSums& sums) {
+    count = join_parts(
+        kept, first, count, cut, double{Margins<float>::more},
+        [&](std::size_t i) { return double{kept.strength[i]}; },
+        [&](std::size_t i) { return kept.source[i]; },
+        [&](std::size_t from, std::size_t to) {
+            kept.element[to] = kept.element[from];
+            kept.source[to] = kept.source[from];
+            for (auto* column : {&kept.x, &kept.y, &kept.z, &kept.strength, &kept.inverse_square,
+                                 &kept.mx, &kept.my, &kept.mz, &kept.parameter, &kept.length,
+                                 &kept.taper_rate, &kept.least, &kept.most, &kept.peak}) {
+                (*column)[to] = (*column)[from];
+            }
+        },
+        sums);
 }
 
 template <Shape shape, KernelKind kind>
@@ -288,12 +334,14 @@ void bound_local_group(const LocalElements& candidates, const LocalStretch& stre
                        PeakSums& sums) {
     const F d;
     const Reach<float> reach = reach_of(stretch, candidates);
+    const std::size_t kept_before = count;
     PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         bound_local_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
                                        count, peaks);
     }
     peaks.add_to(sums);
+    if constexpr (joined<shape>) join_parts(kept, kept_before, double{cut}, count, sums);
 }
 
 PeakSums bound_local(const LocalElements& candidates, const LocalStretch& stretch, double cut,
@@ -302,7 +350,8 @@ PeakSums bound_local(const LocalElements& candidates, const LocalStretch& stretc
     kept.magnitude = candidates.magnitude;
     PeakSums sums;
     std::size_t count = 0;
-    GroupStartsWriter starts(kept.first);
+    GroupStarts& starts = kept.first;
+    starts.clear();
     for_groups_of(candidates.first,
                   [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
                                                     std::size_t end) HWY_ATTR {
@@ -329,6 +378,7 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
     const auto place = [&](double center, double origin, double axis) {
         return static_cast<float>(((center - origin) - middle * axis) * per_unit);
     };
+    const std::size_t kept_before = count;
     PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; ++i) {
         const auto cluster = static_cast<std::size_t>(active.element[i]);
@@ -352,6 +402,9 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
         }
     }
     peaks.add_to(sums);
+    if constexpr (joined<shape>) {
+        if (kept != nullptr) join_parts(*kept, kept_before, double{cut}, count, sums);
+    }
 }
 
 PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
@@ -364,7 +417,8 @@ PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
     PeakSums sums;
     std::size_t count = 0;
     GroupStarts none;
-    GroupStartsWriter starts(kept != nullptr ? kept->first : none);
+    GroupStarts& starts = kept != nullptr ? kept->first : none;
+    starts.clear();
     for_groups_of(
         clusters.first, [&]<Shape shape, KernelKind kind>(std::size_t group, std::size_t first,
                                                           std::size_t end) HWY_ATTR {

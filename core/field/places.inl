@@ -103,6 +103,11 @@ void near_group(const Field& field, const ActiveElements& active, std::size_t fi
             near.peak);
         for (std::size_t k = i; k < i + hn::Lanes(d); ++k) {
             near.element[k] = static_cast<std::int32_t>(active.element[k]);
+            if constexpr (SkeletonOf<shape>::is_joined) {
+                near.whole[k] = static_cast<float>(active.whole[k] * (1 + 0x1p-22)) + 1e-37f;
+                const auto element = static_cast<std::size_t>(active.element[k]);
+                near.source[k] = static_cast<std::int32_t>(field.source[element]);
+            }
         }
     }
 }

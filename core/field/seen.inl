@@ -113,11 +113,13 @@ HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<floa
 template <class Visit>
 HWY_INLINE void for_groups_of(const GroupStarts& starts, const Visit& visit) {
     for_shapes([&]<Shape shape>() HWY_ATTR {
-        constexpr std::size_t of_shape = group_of(shape, KernelKind{});
-        if (starts[of_shape] == starts[of_shape + kernel_count]) return;
+        constexpr std::uint64_t all = ((std::uint64_t{1} << kernel_count) - 1)
+                                      << group_of(shape, KernelKind{});
+        if ((starts.present() & all) == 0) return;
         for_kernels<shape>([&]<Shape, KernelKind kind>() HWY_ATTR {
             constexpr std::size_t group = group_of(shape, kind);
-            const std::size_t first = starts[group], end = starts[group + 1];
+            if (!starts.has(group)) return;
+            const auto [first, end] = starts.range(group);
             if (first != end) visit.template operator()<shape, kind>(group, first, end);
         });
     });

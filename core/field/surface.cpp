@@ -1,6 +1,8 @@
 #include "core/field/surface.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/math/offset.h"
 
@@ -25,11 +27,37 @@ double end_of(KernelKind kind) {
     });
 }
 
+// How near to one another two parts of an element have to be, in s + 1, and how much of its length
+// squared the way to them has to turn, so that there is no telling which is the nearest.
+constexpr double tie = 0x1p-44, turn = 0x1p-40;
+
+struct NearestPart {
+    std::uint32_t part;
+    Nearest at;
+};
+
+template <class Offset>
+NearestPart nearest_of(const Field& field, std::span<const std::uint32_t> parts,
+                       const Offset& offset_of) {
+    NearestPart best{parts[0], nearest(field, parts[0], offset_of(parts[0]))};
+    for (const std::uint32_t i : parts.subspan(1)) {
+        const Nearest at = nearest(field, i, offset_of(i));
+        const Vec3d here = scaled(at.away, field.width[i]),
+                    there = scaled(best.at.away, field.width[best.part]), between = here - there;
+        const bool is_tied =
+            std::abs(at.s - best.at.s) <= tie * (best.at.s + 1) &&
+            dot(between, between) > turn * std::max(dot(here, here), dot(there, there));
+        if (at.s < best.at.s) best = {i, at};
+        if (is_tied) best.at.defined = false;
+    }
+    return best;
+}
+
 // One element's share of the sample. k' is 0 beyond a finite support, where an undefined direction
 // of the gradient does no harm.
-void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& sum, Vec3d& weighted,
+void add(const Field& field, const NearestPart& nearest, FieldSample& sum, Vec3d& weighted,
          double& weight, double& strongest, bool& defined) {
-    const Nearest at = nearest(field, i, from_a);
+    const auto& [i, at] = nearest;
     // With a tiny width the numbers below could overflow there.
     if (!(at.s < end_of(field.kernel[i]))) return;
     const double b = field.strength[i];
@@ -43,7 +71,7 @@ void add(const Field& field, std::size_t i, const Vec3d& from_a, FieldSample& su
     weight += positive;
     if (std::abs(b * k) > strongest) {
         strongest = std::abs(b * k);
-        sum.strongest = static_cast<std::uint32_t>(i);
+        sum.strongest = i;
     }
 }
 
@@ -54,9 +82,9 @@ FieldSample sum_of(const Field& field, const std::vector<std::uint32_t>& element
     Vec3d weighted;
     double weight = 0, strongest = -1;
     bool defined = true;
-    for (const std::uint32_t i : elements) {
-        add(field, i, offset_of(i), sum, weighted, weight, strongest, defined);
-    }
+    for_elements(field, elements, [&](std::span<const std::uint32_t> parts) {
+        add(field, nearest_of(field, parts, offset_of), sum, weighted, weight, strongest, defined);
+    });
     sum.value -= field.threshold;
     if (!defined) sum.gradient = {};
     if (weight > 0) sum.color = scaled(weighted, weight);
@@ -86,9 +114,10 @@ double distance_in_widths(const Field& field, std::size_t i, const Vec3d& from_a
     return std::sqrt(nearest(field, i, from_a).s);
 }
 
-double element_value(const Field& field, std::size_t i, const Vec3d& p) {
-    const double s = nearest(field, i, p - field.a(i)).s;
-    return field.strength[i] * midpoint(kernel_at(field.kernel[i], s));
+double element_value(const Field& field, std::span<const std::uint32_t> parts, const Vec3d& p) {
+    double s = infinity<double>;
+    for (const std::uint32_t i : parts) s = std::min(s, nearest(field, i, p - field.a(i)).s);
+    return field.strength[parts[0]] * midpoint(kernel_at(field.kernel[parts[0]], s));
 }
 
 }  // namespace ivory

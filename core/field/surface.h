@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/field/field.h"
 #include "core/field/support.h"
@@ -14,7 +15,8 @@ struct FieldSample {
     double value = 0;  // f = sum of F_i - T
     Vec3d gradient;    // of f, per scene unit; 0 where it is undefined
     Vec3d color;       // sum of color_i max(F_i, 0) / sum of max(F_i, 0); 0 where no F_i > 0
-    std::uint32_t strongest = 0;  // index into Field of the element with the greatest |F_i|
+    std::uint32_t strongest =
+        0;  // index into Field: the element with the greatest |F_i|, its nearest part
 };
 
 // At the point origin + t direction of exact arithmetic: it is not rounded to doubles on the way,
@@ -29,7 +31,8 @@ struct FieldSample {
 // off by less than 2^-45 (|from_a| + its length + its radius) / w.
 [[nodiscard]] double distance_in_widths(const Field& field, std::size_t i, const Vec3d& from_a);
 
-// F_i at the point p.
-[[nodiscard]] double element_value(const Field& field, std::size_t i, const Vec3d& p);
+// F at the point p of the element that the field has these parts of, one or more.
+[[nodiscard]] double element_value(const Field& field, std::span<const std::uint32_t> parts,
+                                   const Vec3d& p);
 
 }  // namespace ivory

@@ -176,8 +176,8 @@ class Search {
     void make_blocks() {
         const Clusters& all = field_.clusters;
         for (std::size_t group = 0; group < field_groups; ++group) {
-            const std::uint32_t group_end = all.first_of_group[group + 1];
-            for (std::uint32_t first = all.first_of_group[group]; first < group_end;) {
+            const auto [group_first, group_end] = all.first_of_group.of(group);
+            for (std::uint32_t first = group_first; first < group_end;) {
                 Ball block = cluster(first);
                 block.first = first;
                 block.end = std::min<std::uint32_t>(first + block_size, group_end);
@@ -261,7 +261,8 @@ class Search {
         for (int step = 0; step < steps && inside < outside; ++step) {
             const double plane = 0.5 * (inside + outside);
             std::size_t kept = 0;
-            double sum = left_out, dropped = 0;
+            double sum = left_out, dropped = 0, of_parts = 0;
+            std::uint32_t last_source = 0;  // of what `of_parts` is of
             for (std::size_t n = 0; n < behind.size(); ++n) {
                 const Behind& at = behind[n];
                 const std::size_t i = at.element;
@@ -274,7 +275,14 @@ class Search {
                 }
                 const Behind copy = at;
                 if (sum < field_.threshold) {
-                    sum += field_.strength[i] * (s > 0 ? kernel_at(field_.kernel[i], s).hi : 1);
+                    const double most =
+                        field_.strength[i] * (s > 0 ? kernel_at(field_.kernel[i], s).hi : 1);
+                    // of an element's parts, which follow each other, the greatest
+                    const bool joins =
+                        is_joined(field_.shape[i]) && kept > 0 && field_.source[i] == last_source;
+                    sum += joins ? std::max(most - of_parts, 0.0) : most;
+                    of_parts = joins ? std::max(most, of_parts) : most;
+                    last_source = field_.source[i];
                 }
                 std::swap(behind[n], behind[kept]);
                 behind[kept++] = copy;
@@ -458,6 +466,25 @@ class Search {
         Far far{};             // and from which s on
         bool rough = false;    // the cell is so large that the field at its centre tells little
         std::size_t count = 0;
+
+        // Of parts that follow each other: what is more than with those before.
+        void join(std::uint32_t of, double& bound, double& at_center) {
+            if (!has_parts || of != source) {
+                has_parts = true;
+                source = of;
+                parts_bound = bound;
+                parts_value = at_center;
+                return;
+            }
+            const double before = parts_bound, value_before = parts_value;
+            parts_bound = std::max(parts_bound, bound);
+            if (std::abs(at_center) > std::abs(parts_value)) parts_value = at_center;
+            bound = (parts_bound - before) * (1 + slack);
+            at_center = parts_value - value_before;
+        }
+        bool has_parts = false;
+        std::uint32_t source = 0;  // of what follows
+        double parts_bound = 0, parts_value = 0;
     };
 
     // Leaves out what is that far away.
@@ -576,14 +603,18 @@ class Search {
         }
         cell.elements.push_back(i);
         farthest = (farthest + (half_diagonal * cell.half + lost_) * per_width) * (1 + 4 * slack);
-        // What is not a number is out of the range of doubles: 0 is a bound of what carves.
+        // What is not a number is out of the range of doubles: 0 is a bound of what carves. So it is of
+        // one of several parts, each of which may be all that there is.
+        const bool joins = is_joined(field_.shape[i]);
         const double far_s = farthest * farthest * (1 + slack);
-        const double bound = b > 0                      ? b * largest
-                             : far_s < infinity<double> ? b * kernel_at(field_.kernel[i], far_s).lo
-                                                        : 0;
+        const double carved =
+            !joins && far_s < infinity<double> ? b * kernel_at(field_.kernel[i], far_s).lo : 0;
+        double bound = b > 0 ? b * largest : carved;
+        double value = b * midpoint(kernel_at(field_.kernel[i], s));
+        if (joins) sum.join(field_.source[i], bound, value);
         sum.above += bound;
         sum.magnitude += std::abs(bound);
-        sum.value += b * midpoint(kernel_at(field_.kernel[i], s));
+        sum.value += value;
     }
 
     // What reaches farthest first.

@@ -23,7 +23,8 @@ struct Element {
     KernelKind kernel = KernelKind::blinn;
     double strength = 1;  // b, finite, not 0; negative carves
     double width = 1;     // w > 0, divides the distance; of a list the least
-    // Of a segment whose width tapers: at a and at b, each > 0. Empty: `width` all along.
+    // Where the width tapers: at a and at b of a segment, at each point of a polyline, each > 0.
+    // Empty: `width` all along.
     std::vector<double> widths{};
     bool visible = true;  // false: not part of the field
     friend bool operator==(const Element&, const Element&) = default;
@@ -31,7 +32,9 @@ struct Element {
 
 // What a field makes of it.
 [[nodiscard]] inline Shape field_shape_of(const Element& element) {
-    return element.widths.empty() ? shape_of_skeleton(element.skeleton) : Shape::taper;
+    const Shape shape = shape_of_skeleton(element.skeleton);
+    if (element.widths.empty()) return shape;
+    return shape == Shape::polyline ? Shape::tapered_polyline : Shape::taper;
 }
 
 struct Camera {

@@ -63,23 +63,63 @@ Fault unless_color(std::string_view key, const Color& color) {
     return std::nullopt;
 }
 
-Fault find_fault(std::string_view key, MemberKind kind, const Vec3d& value) {
-    return kind == MemberKind::direction ? unless_direction(key, value) : unless_finite(key, value);
+template <class Skeleton>
+Fault find_fault(const Member<Skeleton, Vec3d>& member, const Vec3d& value) {
+    return member.kind == MemberKind::direction ? unless_direction(member.key, value)
+                                                : unless_finite(member.key, value);
 }
 
-Fault find_fault(std::string_view key, MemberKind, double length) {
+template <class Skeleton>
+Fault find_fault(const Member<Skeleton, double>& member, double length) {
     if (length >= 0 && std::isfinite(length)) return std::nullopt;
-    return wrong("/" + std::string(key), "the " + std::string(key), length,
+    return wrong("/" + std::string(member.key), "the " + std::string(member.key), length,
                  "0 or greater, and finite");
+}
+
+template <class Skeleton>
+Fault find_fault(const Member<Skeleton, std::vector<Vec3d>>& member,
+                 const std::vector<Vec3d>& places) {
+    const std::string key(member.key);
+    if (places.size() < member.least) {
+        return SceneFault{"/" + key, "the list of " + key + " has " +
+                                         std::to_string(places.size()) + "; it must have " +
+                                         std::to_string(member.least) + " or more"};
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (std::isfinite(places[i][k])) continue;
+            return wrong(
+                pointer_to(key, i) + "/" + std::to_string(k),
+                std::string(axes[k]) + " of number " + std::to_string(i + 1) + " of the " + key,
+                places[i][k], "a finite number");
+        }
+    }
+    return std::nullopt;
 }
 
 template <class S>
 Fault find_fault(const S& skeleton) {
     Fault fault;
     for_members<S>([&](const auto& member) {
-        if (!fault) fault = find_fault(member.key, member.kind, skeleton.*member.value);
+        if (!fault) fault = find_fault(member, skeleton.*member.value);
     });
     return fault;
+}
+
+// So many widths as the skeleton has places for them, if it has a list.
+Fault unless_widths_fit(const Element& element) {
+    if (element.widths.empty()) return std::nullopt;
+    return std::visit(
+        [&]<class S>(const S& skeleton) -> Fault {
+            std::size_t places = 0;
+            if constexpr (S::may_taper) places = skeleton.width_places();
+            if (element.widths.size() == places) return std::nullopt;
+            return SceneFault{"/width", "the list of widths has " +
+                                            std::to_string(element.widths.size()) +
+                                            "; it must have " + std::to_string(places) +
+                                            ", or be a single number"};
+        },
+        element.skeleton);
 }
 
 SceneFault within(const std::string& part, SceneFault fault) {
@@ -239,6 +279,7 @@ std::optional<SceneFault> find_fault(const Element& element) {
                      "finite and not 0 (below 0 it carves; \"visible\": false leaves the element "
                      "out)");
     }
+    if (Fault fault = unless_widths_fit(element)) return fault;
     for (std::size_t i = 0; i < element.widths.size(); ++i) {
         if (!(element.widths[i] > 0 && std::isfinite(element.widths[i]))) {
             return wrong(pointer_to("width", i), "the width", element.widths[i],

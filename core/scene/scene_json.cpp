@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -57,7 +58,7 @@ constexpr std::string_view word_with_article{characters_with_article<S>.data(),
                                              characters_with_article<S>.size()};
 
 // The format has these too, as soon as they are in core/shape/shapes.h.
-constexpr std::array<std::string_view, 3> shapes_to_come{"polygon", "curve", "polyline"};
+constexpr std::array<std::string_view, 2> shapes_to_come{"polygon", "curve"};
 constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
 // The kinds of objects that a scene is made of.
@@ -223,6 +224,27 @@ void read(const Node& node, Vec3d& v) {
     }
 }
 
+template <class Item>
+void read_list(const Node& node, std::string_view expected, std::vector<Item>& items) {
+    node.must_be(JsonKind::list, expected);
+    items.clear();
+    items.reserve(node.value.items().size());
+    for (const JsonValue item : node.value.items()) {
+        node.reading.steps.take_one();
+        const std::size_t i = items.size();
+        read(Node{node.reading, item, &node, {}, i}, items.emplace_back());
+    }
+}
+
+template <class Skeleton, class Value>
+void read(const Node& node, const Member<Skeleton, Value>& member, Skeleton& skeleton) {
+    if constexpr (std::is_same_v<Value, std::vector<Vec3d>>) {
+        read_list(node, "a list of points, each a list of three numbers", skeleton.*member.value);
+    } else {
+        read(node, skeleton.*member.value);
+    }
+}
+
 void read(const Node& node, KernelKind& kernel) {
     kernel = static_cast<KernelKind>(one_of(node, kernel_words));
 }
@@ -270,13 +292,14 @@ void read_element(const Node& node, Element& element) {
     const Members members(node, format);
     S& skeleton = element.skeleton.emplace<S>();
     for_members<S>(
-        [&](const auto& member) { read(members.required(member.key), skeleton.*member.value); });
+        [&](const auto& member) { read(members.required(member.key), member, skeleton); });
     read_if_there(members, "name", element.name);
     read_if_there(members, "color", element.color);
     read_if_there(members, "kernel", element.kernel);
     read_if_there(members, "strength", element.strength);
     if constexpr (S::may_taper) {
-        if (const auto width = members.optional("width")) read_widths(*width, 2, element);
+        if (const auto width = members.optional("width"))
+            read_widths(*width, skeleton.width_places(), element);
     } else {
         read_if_there(members, "width", element.width);
     }
@@ -300,17 +323,6 @@ void read(const Node& node, Element& element) {
         }
     }
     throw shape.wrong_kind(listed(shape_words, "or"));
-}
-
-template <class Item>
-void read_list(const Node& node, std::string_view expected, std::vector<Item>& items) {
-    node.must_be(JsonKind::list, expected);
-    items.reserve(node.value.items().size());
-    for (const JsonValue item : node.value.items()) {
-        node.reading.steps.take_one();
-        const std::size_t i = items.size();
-        read(Node{node.reading, item, &node, {}, i}, items.emplace_back());
-    }
 }
 
 void read(const Node& node, Scene& scene) {

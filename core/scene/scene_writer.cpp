@@ -40,6 +40,19 @@ class Members {
         text_ += "]";
         return *this;
     }
+    Members& add(std::string_view key, const std::vector<Vec3d>& places) {
+        add(key);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            text_ += i == 0 ? "[" : ", ";
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                text_ += axis == 0 ? "[" : ", ";
+                append_number(text_, places[i][axis]);
+            }
+            text_ += "]";
+        }
+        text_ += "]";
+        return *this;
+    }
     Members& add(std::string_view key, const std::vector<double>& numbers) {
         add(key);
         for (std::size_t i = 0; i < numbers.size(); ++i) {

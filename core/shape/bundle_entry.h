@@ -14,7 +14,7 @@ struct BundleEntry {
     // instead
     Real slope;
     Real taper_rate;             // of tapers (core/shape/taper.h)
-    Real unused;                 // entries are written four numbers at a time
+    Real joins;                  // not 0: the next entry is another part of the same element
     Real mx, my, mz, parameter;  // not of points
 };
 

@@ -30,7 +30,8 @@ struct SegmentSkeleton {
     static constexpr bool has_kinks = false;
     // m = b - a; parameter = 1 / |m|^2, 0 where that is shorter than 1e-40 and stands for its end a.
     // With a list of widths: core/shape/taper.h.
-    static constexpr bool may_taper = true, is_taper = false;
+    static constexpr bool may_taper = true, is_taper = false, is_joined = false;
+    static constexpr std::size_t width_places() { return 2; }
     static constexpr bool has_axis = true;
     static constexpr int m_power = 1, parameter_power = -2;
 
@@ -186,10 +187,9 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 namespace {
 
-template <>
-struct ShapeLanes<SegmentSkeleton> {
-    static constexpr Shape shape = shape_of<SegmentSkeleton>;
-
+// Of any shape whose elements are segments to a field.
+template <Shape shape>
+struct SegmentLanes {
     template <class Tag>
     static HWY_INLINE V<Tag> clamped(V<Tag> along, V<Tag> parameter) {
         return hn::Min(at_least_0(hn::Mul(along, parameter)), constant(Tag(), 1));
@@ -262,6 +262,9 @@ struct ShapeLanes<SegmentSkeleton> {
                 hn::Zero(d)};
     }
 };
+
+template <>
+struct ShapeLanes<SegmentSkeleton> : SegmentLanes<shape_of<SegmentSkeleton>> {};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

@@ -7,6 +7,9 @@
 #include "core/shape/segment.h"
 #include "core/shape/taper.h"
 
+// Of the parts of those:
+#include "core/shape/polyline.h"
+
 #ifndef IVORY_CORE_SHAPE_SHAPES_H
 #define IVORY_CORE_SHAPE_SHAPES_H
 
@@ -22,17 +25,21 @@
 
 namespace ivory {
 
-enum class Shape : std::uint8_t { point, segment, circle, disc, taper };
-using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton>;
+enum class Shape : std::uint8_t { point, segment, circle, disc, polyline, taper, tapered_polyline };
+using Shapes =
+    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolylineSkeleton>;
 // What fields are made of: those, and what becomes of a list of widths.
-using FieldShapes =
-    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, TaperedSegment>;
+using FieldShapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton,
+                             PolylineSkeleton, TaperedSegment, TaperedPolyline>;
 
 static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
 static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
 static_assert(index_in<CircleSkeleton, Shapes> == static_cast<std::size_t>(Shape::circle));
 static_assert(index_in<DiscSkeleton, Shapes> == static_cast<std::size_t>(Shape::disc));
+static_assert(index_in<PolylineSkeleton, Shapes> == static_cast<std::size_t>(Shape::polyline));
 static_assert(index_in<TaperedSegment, FieldShapes> == static_cast<std::size_t>(Shape::taper));
+static_assert(index_in<TaperedPolyline, FieldShapes> ==
+              static_cast<std::size_t>(Shape::tapered_polyline));
 
 // The one alternative that an element has; its index is the Shape.
 using Skeleton = Shapes::Into<std::variant>;
@@ -48,6 +55,7 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
     { S::has_kinks } -> std::convertible_to<bool>;
     { S::has_axis } -> std::convertible_to<bool>;
     { S::is_taper } -> std::convertible_to<bool>;
+    { S::is_joined } -> std::convertible_to<bool>;  // several parts: core/shape/joined.h
     { S::m_power } -> std::convertible_to<int>;
     { S::parameter_power } -> std::convertible_to<int>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
@@ -59,6 +67,22 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
     S::see(columns, span, v, v, v, on_ray);
 };
 
+// The parts that a skeleton is to a field: one, but of joined ones.
+template <class S>
+[[nodiscard]] std::size_t parts_of(const S& skeleton) {
+    if constexpr (S::is_joined)
+        return skeleton.parts();
+    else
+        return 1;
+}
+template <class S>
+[[nodiscard]] SkeletonColumns part_of(const S& skeleton, std::size_t part) {
+    if constexpr (S::is_joined)
+        return skeleton.part(part);
+    else
+        return skeleton.columns();
+}
+
 template <class S>
 concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires(const S& s) {
     { S::word } -> std::convertible_to<std::string_view>;      // in scene files
@@ -67,11 +91,22 @@ concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires
     std::tuple_size<decltype(S::members())>::value;
     { S::may_taper } -> std::convertible_to<bool>;  // its width may be a list
     { s.middle() } -> std::same_as<Vec3d>;
-    { s.columns() } -> std::same_as<SkeletonColumns>;
+    { part_of(s, 0) } -> std::same_as<SkeletonColumns>;
 };
 
 inline constexpr std::size_t shape_count = Shapes::size;
 inline constexpr std::size_t field_shape_count = FieldShapes::size;
+
+[[nodiscard]] constexpr bool is_taper(Shape shape) {
+    return shape == Shape::taper || shape == Shape::tapered_polyline;
+}
+[[nodiscard]] constexpr bool is_joined(Shape shape) {
+    return shape == Shape::polyline || shape == Shape::tapered_polyline;
+}
+static_assert([]<class... S>(TypeList<S...>) {
+    return ((is_taper(static_cast<Shape>(index_in<S, FieldShapes>)) == S::is_taper) && ...) &&
+           ((is_joined(static_cast<Shape>(index_in<S, FieldShapes>)) == S::is_joined) && ...);
+}(FieldShapes{}));
 
 template <class S>
 inline constexpr Shape shape_of = static_cast<Shape>(index_in<S, FieldShapes>);
@@ -98,7 +133,8 @@ constexpr void for_members(const Visit& visit) {
 
 // "point", ..., in the order of `Shape`: the words of the file format.
 inline constexpr auto shape_words = []<class... S>(TypeList<S...>) {
-    static_assert((SkeletonShape<S> && ...) && FieldShape<TaperedSegment>);
+    static_assert((SkeletonShape<S> && ...) && FieldShape<TaperedSegment> &&
+                  FieldShape<TaperedPolyline>);
     return std::array<std::string_view, sizeof...(S)>{S::word...};
 }(Shapes{});
 

@@ -2,7 +2,9 @@
 // them, and what the compiled field keeps of one.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "core/math/box3.h"
 #include "core/math/vec3.h"
@@ -11,6 +13,7 @@ namespace ivory {
 
 enum class MemberKind : unsigned char {
     place,      // a Vec3d, finite
+    places,     // a list of such, at least so many as the member says
     direction,  // a Vec3d, finite and not 0; its length does not matter
     length,     // a double, finite and at least 0
 };
@@ -21,12 +24,18 @@ struct Member {
     std::string_view key, label;
     MemberKind kind;
     Value Skeleton::*value;
+    std::size_t least = 1;  // of a list: so many at the least
 };
 
 template <class Skeleton>
 constexpr Member<Skeleton, Vec3d> place(std::string_view key, std::string_view label,
                                         Vec3d Skeleton::*value) {
     return {key, label, MemberKind::place, value};
+}
+template <std::size_t least, class Skeleton>
+constexpr Member<Skeleton, std::vector<Vec3d>> places(std::string_view key, std::string_view label,
+                                                      std::vector<Vec3d> Skeleton::*value) {
+    return {key, label, MemberKind::places, value, least};
 }
 template <class Skeleton>
 constexpr Member<Skeleton, Vec3d> direction(std::string_view key, std::string_view label,

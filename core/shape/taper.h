@@ -33,7 +33,7 @@ namespace ivory {
 // Not a skeleton of its own: what a field makes of a segment with two widths.
 struct TaperedSegment {
     static constexpr bool has_kinks = true;  // beyond kappa q = 1
-    static constexpr bool is_taper = true;
+    static constexpr bool is_taper = true, is_joined = false;
     static constexpr bool has_axis = true;  // m = b - a
     static constexpr int m_power = 1, parameter_power = 0;
 
@@ -112,9 +112,9 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 namespace {
 
-template <>
-struct ShapeLanes<TaperedSegment> {
-    static constexpr Shape shape = shape_of<TaperedSegment>;
+// Of any shape whose elements are tapers to a field.
+template <Shape shape>
+struct TaperLanes {
     // (kappa q)^2 up to which the bounds below are told, and 1 - that.
     static constexpr double most_bent = 0.8, least_straight = 0.19;
 
@@ -240,9 +240,42 @@ struct ShapeLanes<TaperedSegment> {
                        hn::Set(d, Margin::margin - 1));
     }
 
+    // Whether the foot is b for all rays on the stretch, and for what rounding makes of (1): there s is
+    // that of a point. So it is from kappa q = 1 on, where the ball around b holds all others, but for
+    // the apex. psi(1) <= 0 says so: with r the rate and A = |v|^2, in least widths,
+    //     E = r A + (1 - r) alpha - |m|^2 >= 0,
+    // which is convex along the axis with a second derivative of 2 r.
+    template <class Tag>
+    static HWY_INLINE M<Tag> ends_at_b(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                       V<Tag> error) {
+        using Margin = Margins<hn::TFromD<Tag>>;
+        const Tag d;
+        const V<Tag> one = constant(d, 1), r = e.taper_rate;
+        const V<Tag> m_square = square_of(e.size);
+        const auto at = [&](hn::TFromD<Tag> t) HWY_ATTR {
+            const Vec3v<Tag> v = e.from_axis(s.axis, t);
+            return hn::Sub(
+                hn::MulAdd(r, dot<Tag>(v, v), hn::Mul(hn::Sub(one, r), dot<Tag>(v, e.m))),
+                m_square);
+        };
+        const hn::TFromD<Tag> half = (s.end - s.begin) / 2 * Margin::more;
+        const V<Tag> sag = hn::Mul(r, hn::Set(d, half * half));
+        // |v| at most, and how far a ray is from the axis there
+        const V<Tag> far = hn::Add(e.magnitude, hn::Set(d, s.magnitude));
+        const V<Tag> aside = hn::Add(
+            error, hn::Set(d, (s.t_offset + s.end) * s.spread * Margin::more * Margin::more));
+        const V<Tag> reach = hn::Add(far, aside);
+        const V<Tag> steepest = hn::MulAdd(hn::Add(r, one), e.size, hn::Mul(hn::Add(r, r), reach));
+        const V<Tag> size = hn::MulAdd(
+            r, square_of(reach), hn::MulAdd(hn::Mul(hn::Add(r, one), e.size), reach, m_square));
+        const V<Tag> off =
+            hn::MulAdd(size, hn::Set(d, Margin::margin), hn::MulAdd(steepest, aside, sag));
+        return hn::Gt(hn::Min(at(s.begin), at(s.end)), hn::Mul(off, hn::Set(d, Margin::more)));
+    }
+
     // (2), or with w* (|m|^2 + alpha r) = w* |m|^2 W in its place
     //     (D^2)'' / 2 >= 1 - (1 + 2 kappa q)^2 / (W max(W, 1)),
-    // whichever says more; `inverse` is what `errors` needs of g = w* / W = 1 / (1 - kappa^2 q^2), over
+    // or that of a point, whichever says more; `inverse` is what `errors` needs of g = w* / W = 1 / (1 - kappa^2 q^2), over
     // |m|. Where neither says anything nothing is known of f''; the gradient is defined but at the apex
     // itself.
     template <class Tag>
@@ -283,9 +316,12 @@ struct ShapeLanes<TaperedSegment> {
         const M<Tag> has_length =
             hn::Gt(e.size, constant(d, sizeof(hn::TFromD<Tag>) == sizeof(float) ? 1e-20 : 1e-150));
         const V<Tag> size = hn::IfThenElse(has_length, e.size, one);
-        return {hn::IfThenElse(hn::And(has_length, hn::Or(is_low, is_wide)),
-                               hn::Div(hn::Mul(of_foot, widened), size), hn::Neg(one)),
-                outward};
+        const V<Tag> known = hn::IfThenElse(hn::And(has_length, hn::Or(is_low, is_wide)),
+                                            hn::Div(hn::Mul(of_foot, widened), size), hn::Neg(one));
+        // Of a point (D^2)'' is above 0, and nothing turns with the foot.
+        const M<Tag> at_b = ends_at_b(e, s, error);
+        return {hn::IfThenElse(at_b, hn::Div(widened, size), known),
+                hn::IfThenElse(at_b, hn::Min(outward, widened), outward)};
     }
     template <class Tag>
     static HWY_INLINE M<Tag> is_defined(Tag d, const BundleEntry<hn::TFromD<Tag>>&, double,
@@ -333,6 +369,9 @@ struct ShapeLanes<TaperedSegment> {
         return {value, hn::Mul(value, c(1.9))};
     }
 };
+
+template <>
+struct ShapeLanes<TaperedSegment> : TaperLanes<shape_of<TaperedSegment>> {};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

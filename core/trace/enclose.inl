@@ -73,8 +73,25 @@ HWY_INLINE V<D> two_sum(V<D> x, V<D> y, V<D>& lost) {
 template <Shape shape, KernelKind kind, bool compensated, std::size_t n>
 HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint32_t count,
                                const Vec3v<D> (&p)[n], const Vec3v<D> (&direction)[n],
-                               FieldValue<D> (&sum)[n], V<D> (&lost)[n]) {
-    for (const auto* const end = entry + count; entry != end; ++entry) {
+                               const Vicinity<D>& near, FieldValue<D> (&sum)[n], V<D> (&lost)[n]) {
+    const auto* const end = entry + count;
+    if constexpr (SkeletonOf<shape>::is_joined) {
+        while (entry != end) {
+            const V<D> strength = hn::Set(d, entry->strength);
+            const BundleEntry<double>* next = entry;
+            for_each_of<n>([&](auto half) HWY_ATTR {
+                next = entry;
+                V<D> k;
+                FieldValue<D>& to = sum[half];
+                add_parts<shape, kind>(d, next, p[half], direction[half], near, k, to);
+                to.f = compensated ? two_sum(to.f, hn::Mul(strength, k), lost[half])
+                                   : hn::MulAdd(strength, k, to.f);
+            });
+            entry = next;
+        }
+        return;
+    }
+    for (; entry != end; ++entry) {
         for_each_of<n>([&](auto half) HWY_ATTR {
             V<D> square;
             const Vec3v<D> away = away_from<shape>(d, *entry, p[half], square);
@@ -91,14 +108,15 @@ HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint3
 
 template <bool compensated, std::size_t n>
 HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
-                         const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n]) {
+                         const Vec3v<D> (&direction)[n], const Vicinity<D>& near,
+                         FieldValue<D> (&value)[n]) {
     const D d;
     V<D> lost[n];
     for_each_of<n>([&](auto half) HWY_ATTR { lost[half] = hn::Zero(d); });
     for_groups(window.fine,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first,
-                                                            count, p, direction, value, lost);
+                                                            count, p, direction, near, value, lost);
                });
     if constexpr (compensated) {
         for_each_of<n>([&](auto half)
@@ -112,8 +130,14 @@ HWY_INLINE void add_float_group(F d, const BundleEntry<float>* entry, std::uint3
     for (const auto* const end = entry + count; entry != end; ++entry) {
         V<F> square;
         away_from<shape>(d, *entry, p, square);
-        const V<F> k = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry->inverse_square))).k;
-        sum = hn::MulAdd(hn::Set(d, entry->strength), k, sum);
+        V<F> s = hn::Mul(square, hn::Set(d, entry->inverse_square));
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            for (; entry->joins != 0; ++entry) {
+                away_from<shape>(d, entry[1], p, square);
+                s = hn::Min(s, hn::Mul(square, hn::Set(d, entry[1].inverse_square)));
+            }
+        }
+        sum = hn::MulAdd(hn::Set(d, entry->strength), LanesOf<kind>::at(d, s).k, sum);
     }
 }
 
@@ -133,16 +157,15 @@ HWY_INLINE V<F> narrowed(const V<D> (&x)[n], double factor) {
 // f of the fine stage, and the slope of its entries in double.
 template <std::size_t n>
 void evaluate_fine(const Window& window, double threshold, double unit, const Vec3v<D> (&p)[n],
-                   const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n]) {
+                   const Vec3v<D> (&direction)[n], const Vicinity<D>& near,
+                   FieldValue<D> (&value)[n]) {
     const D d;
     const F narrow;
-    for_each_of<n>([&](auto half) HWY_ATTR {
-        value[half] = {hn::Set(d, -threshold), hn::Zero(d)};
-    });
+    for_each_of<n>([&](auto half) HWY_ATTR { value[half] = no_field(d, -threshold); });
     if (window.compensated) {
-        add_fine<true>(window, p, direction, value);
+        add_fine<true>(window, p, direction, near, value);
     } else {
-        add_fine<false>(window, p, direction, value);
+        add_fine<false>(window, p, direction, near, value);
     }
     if (window.fine_in_float.size == 0) return;
     V<D> x[n], y[n], z[n];
@@ -151,12 +174,12 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
         y[half] = p[half].y;
         z[half] = p[half].z;
     });
-    const Vec3v<F> near{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
+    const Vec3v<F> in_units{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
     V<F> in_float = hn::Zero(narrow);
     for_groups(window.fine_in_float,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_float_group<shape, kind>(narrow, window.fine_in_float.entry.data() + first,
-                                                count, near, in_float);
+                                                count, in_units, in_float);
                });
     alignas(64) float sums[HWY_MAX_BYTES / sizeof(float)];
     hn::Store(in_float, narrow, sums);
@@ -171,11 +194,18 @@ struct Enclosing {
     double threshold, unit, half_width;
     double common_cell;  // see there
     double left_out;
+    double error;  // of two values, at most
+
+    // What the lines of a step are asked for: the first guess is that near, others nearer by far.
+    [[nodiscard]] double reach_of_step(int step) const {
+        return (window.end - window.begin) * (step == 0 ? 0x1p-6 : 0x1p-14);
+    }
 };
 
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
-// f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x. So f < 0 before the
-// least zero of these lines, back to where g began to rise, and f > 0 after the greatest one.
+// f(m + x) <= g(m) + above + (slope over |x| <= delta) x for both signs of x, the slopes being those
+// of any part of a joined element. So f < 0 before the least zero of these lines, back to where g
+// began to rise, and f > 0 after the greatest one.
 // In a refined window g is another sum, and what rises before m - delta is that of the walk,
 // g0 = f - (at most left_out): so delta is made so large that f(m - delta) < -left_out there. Then
 // g0 + left_out is below 0 there and before, and so is f.
@@ -188,8 +218,8 @@ struct Enclosed {
     V<D> m;       // where to look next
     V<D> cell, inverse_cell;
 
-    // With f and its slope at m.
-    HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value) {
+    // With f and its slope at m, those of parts of joined elements as far as `reach`.
+    HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value, double reach) {
         const D d;
         const Window& window = task.window;
         const auto c = [&](double x) HWY_ATTR { return hn::Set(d, x); };
@@ -201,7 +231,9 @@ struct Enclosed {
         const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
         const V<D> inverse = hn::Div(c(1), value.slope);
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
-        const V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
+        const V<D> others = hn::IfThenElse(hn::Le(delta, c(reach)),
+                                           hn::Max(value.above, value.below), value.anywhere);
+        const V<D> bend = hn::Add(hn::MulAdd(curvature, delta, c(bounds.slope)), others);
         const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
         // Then size / slope_lo < delta, and f < -left_out at m - delta.
         const M<D> firm = hn::And(
@@ -263,11 +295,13 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&dir
         steps += open;
         Vec3v<D> p[n];
         FieldValue<D> value[n];
+        const double reach = task.reach_of_step(step);
+        const Vicinity<D> near{hn::Set(d, (1 - 0x1p-40) / reach), hn::Set(d, task.error)};
         for_each_of<n>([&](auto half) HWY_ATTR {
             p[half] = place(task.window, direction[half], enclosed[half].m);
         });
-        evaluate_fine(task.window, task.threshold, task.unit, p, direction, value);
-        for_each_of<n>([&](auto half) HWY_ATTR { enclosed[half].take(task, value[half]); });
+        evaluate_fine(task.window, task.threshold, task.unit, p, direction, near, value);
+        for_each_of<n>([&](auto half) HWY_ATTR { enclosed[half].take(task, value[half], reach); });
     }
     return steps;
 }
@@ -344,7 +378,9 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
     const std::size_t N = hn::Lanes(d), step = halves * N;
     const auto set = [&](Lanes::State state)
                          HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
-    const Enclosing task{window, threshold, unit, half_width, common_cell(half_width), left_out};
+    const double error = 2 * (window.fine_bounds.above + window.fine_bounds.below);
+    const Enclosing task{window,   threshold, unit, half_width, common_cell(half_width),
+                         left_out, error};
     const Outcome outcome{pinned, otherwise};
     Batch batch;
     std::uint64_t steps = 0;

@@ -20,15 +20,98 @@ HWY_INLINE Vec3v<Tag> away_from(Tag d, const BundleEntry<hn::TFromD<Tag>>& e, co
     return LanesOfShape<shape>::away(d, e, p, square);
 }
 
+// The sum of the nearest parts. A joined element with b > 0 is the greatest of its parts' fields, one
+// with b < 0 the least: with the slopes of others in the place of theirs f' may be `above` more and
+// `below` less, as far as they can have a say within `reach`, and `anywhere` more or less.
 template <class Tag>
 struct FieldValue {
     V<Tag> f, slope;
+    V<Tag> above, below, anywhere;
 };
+
+template <class Tag>
+HWY_INLINE FieldValue<Tag> no_field(Tag d, hn::TFromD<Tag> f) {
+    const V<Tag> zero = hn::Zero(d);
+    return {hn::Set(d, f), zero, zero, zero, zero};
+}
+
+// How far from p along the ray f is asked for: at most `reach`, and what two values of k b may be off by.
+template <class Tag>
+struct Vicinity {
+    V<Tag> per_reach;  // at most 1 / reach
+    V<Tag> error;
+};
+
+// `entry` leads to the first part, then to what follows the last. Within `reach` a part of an element
+// with b > 0 whose F is less by D is no greater than if its slope were less by D / reach.
+template <Shape shape, KernelKind kind, class Tag>
+HWY_INLINE void add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry, const Vec3v<Tag>& p,
+                          const Vec3v<Tag>& direction, const Vicinity<Tag>& near,
+                          V<Tag>& greatest_k, FieldValue<Tag>& sum) {
+    const bool adds = entry->strength > 0;
+    const V<Tag> strength = hn::Set(d, entry->strength);
+    V<Tag> least = hn::Zero(d), k = least, slope = least, lowest = least, highest = least;
+    V<Tag> least_tilted = least, most_tilted = least;
+    bool is_first = true, joins = true;
+    for (; joins; ++entry) {
+        V<Tag> square;
+        const Vec3v<Tag> away = away_from<shape>(d, *entry, p, square);
+        const V<Tag> s = hn::Mul(square, hn::Set(d, entry->inverse_square));
+        const KernelValue<Tag> value = LanesOf<kind>::at(d, s);
+        const V<Tag> own =
+            hn::Mul(hn::Mul(hn::Set(d, entry->slope), value.dk), dot<Tag>(away, direction));
+        const V<Tag> tilt = hn::Mul(hn::Mul(strength, value.k), near.per_reach);
+        joins = entry->joins != 0;
+        if (is_first) {
+            is_first = false;
+            least = s;
+            k = value.k;
+            slope = lowest = highest = own;
+            least_tilted = hn::Sub(own, tilt);
+            most_tilted = hn::Add(own, tilt);
+            continue;
+        }
+        const M<Tag> nearer = hn::Not(hn::Ge(s, least));
+        least = hn::IfThenElse(nearer, s, least);
+        k = hn::IfThenElse(nearer, value.k, k);
+        slope = hn::IfThenElse(nearer, own, slope);
+        lowest = hn::Min(lowest, own);
+        highest = hn::Max(highest, own);
+        least_tilted = hn::Min(least_tilted, hn::Sub(own, tilt));
+        most_tilted = hn::Max(most_tilted, hn::Add(own, tilt));
+    }
+    greatest_k = k;
+    sum.slope = hn::Add(sum.slope, slope);
+    const V<Tag> anywhere = hn::Max(hn::Sub(highest, slope), hn::Sub(slope, lowest));
+    sum.anywhere = hn::Add(sum.anywhere, anywhere);
+    if (adds) {
+        const V<Tag> tilt = hn::Mul(hn::Mul(strength, k), near.per_reach);
+        const V<Tag> off = hn::Mul(near.error, near.per_reach);
+        const V<Tag> above = hn::Add(hn::Sub(most_tilted, hn::Add(slope, tilt)), off);
+        const V<Tag> below = hn::Add(hn::Sub(hn::Sub(slope, tilt), least_tilted), off);
+        sum.above = hn::Add(sum.above, hn::Min(at_least_0(above), anywhere));
+        sum.below = hn::Add(sum.below, hn::Min(at_least_0(below), anywhere));
+    } else {
+        sum.above = hn::Add(sum.above, anywhere);
+        sum.below = hn::Add(sum.below, anywhere);
+    }
+}
 
 template <Shape shape, KernelKind kind, class Tag>
 HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std::uint32_t count,
-                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
-    for (const auto* const end = entry + count; entry != end; ++entry) {
+                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction,
+                          const Vicinity<Tag>& near, FieldValue<Tag>& sum) {
+    const auto* const end = entry + count;
+    if constexpr (SkeletonOf<shape>::is_joined) {
+        while (entry != end) {
+            const V<Tag> strength = hn::Set(d, entry->strength);
+            V<Tag> k;
+            add_parts<shape, kind>(d, entry, p, direction, near, k, sum);
+            sum.f = hn::MulAdd(strength, k, sum.f);
+        }
+        return;
+    }
+    for (; entry != end; ++entry) {
         V<Tag> square;
         const Vec3v<Tag> away = away_from<shape>(d, *entry, p, square);
         const KernelValue<Tag> value =
@@ -61,20 +144,19 @@ HWY_INLINE void for_groups(const StageEntries<Real>& stage, const Visit& visit) 
 
 template <class Tag>
 HWY_INLINE void add(Tag d, const StageEntries<hn::TFromD<Tag>>& stage, const Vec3v<Tag>& p,
-                    const Vec3v<Tag>& direction, FieldValue<Tag>& sum) {
-    for_groups(stage,
-               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
-                   add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum);
-               });
+                    const Vec3v<Tag>& direction, const Vicinity<Tag>& near, FieldValue<Tag>& sum) {
+    for_groups(
+        stage, [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
+            add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, near, sum);
+        });
 }
 
 template <class Tag>
 HWY_INLINE FieldValue<Tag> evaluate(Tag d, const StageEntries<hn::TFromD<Tag>>& stage,
                                     double threshold, const Vec3v<Tag>& p,
-                                    const Vec3v<Tag>& direction) {
-    using Real = hn::TFromD<Tag>;
-    FieldValue<Tag> sum{hn::Set(d, static_cast<Real>(-threshold)), hn::Zero(d)};
-    add(d, stage, p, direction, sum);
+                                    const Vec3v<Tag>& direction, const Vicinity<Tag>& near) {
+    FieldValue<Tag> sum = no_field(d, static_cast<hn::TFromD<Tag>>(-threshold));
+    add(d, stage, p, direction, near, sum);
     return sum;
 }
 

@@ -23,27 +23,84 @@ struct SurfaceSum {
     V<D> weight;
 };
 
+// Of the nearest part of a joined element: s times the kernel's argument_scale, and the gradient of s
+// halved. Not defined where another part is as near, to `gap` of s + 1, and lies in another direction,
+// to `turn` of the length squared.
+template <class Tag>
+struct NearestPart {
+    V<Tag> s;
+    Vec3v<Tag> half_gradient;
+    M<Tag> defined;
+};
+
+// The first one is entry[k]; then `k` is the last.
+template <Shape shape, class Tag>
+HWY_INLINE NearestPart<Tag> nearest_part(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry,
+                                         std::uint32_t& k, double per_scale, const Vec3v<Tag>& p,
+                                         double gap, double turn) {
+    using Real = hn::TFromD<Tag>;
+    const auto at = [&](const BundleEntry<Real>& e) HWY_ATTR {
+        V<Tag> square;
+        const Vec3v<Tag> away = away_from<shape>(d, e, p, square);
+        const V<Tag> factor = hn::Set(d, static_cast<Real>(e.inverse_square * per_scale));
+        return NearestPart<Tag>{
+            hn::Mul(square, hn::Set(d, e.inverse_square)),
+            {hn::Mul(factor, away.x), hn::Mul(factor, away.y), hn::Mul(factor, away.z)},
+            hn::FirstN(d, hn::Lanes(d))};
+    };
+    const V<Tag> near = hn::Set(d, static_cast<Real>(gap)),
+                 apart = hn::Set(d, static_cast<Real>(turn));
+    NearestPart<Tag> best = at(entry[k]);
+    while (entry[k].joins != 0) {
+        const NearestPart<Tag> part = at(entry[++k]);
+        const Vec3v<Tag>&a = best.half_gradient, &b = part.half_gradient;
+        const Vec3v<Tag> between{hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+        const M<Tag> nearer = hn::Lt(part.s, best.s);
+        const M<Tag> as_near =
+            hn::Le(hn::Abs(hn::Sub(part.s, best.s)), hn::MulAdd(near, best.s, near));
+        const M<Tag> turns = hn::Gt(dot<Tag>(between, between), hn::Mul(apart, dot<Tag>(a, a)));
+        best = {hn::IfThenElse(nearer, part.s, best.s),
+                {hn::IfThenElse(nearer, b.x, a.x), hn::IfThenElse(nearer, b.y, a.y),
+                 hn::IfThenElse(nearer, b.z, a.z)},
+                hn::AndNot(hn::And(as_near, turns), hn::Or(nearer, best.defined))};
+    }
+    return best;
+}
+
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::uint32_t* element,
                             std::uint32_t count, const Field& field, const Vec3v<D>& p,
                             SurfaceSum& sum, M<D>& defined) {
     for (std::uint32_t k = 0; k < count; ++k) {
-        V<D> square;
-        const Vec3v<D> away = away_from<shape>(d, entry[k], p, square);
-        const KernelValue<D> value =
-            LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
-        const double inverse_square = entry[k].inverse_square * (1 / LanesOf<kind>::argument_scale);
-        const V<D> slope =
-            hn::Mul(hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength * inverse_square),
-                    value.dk);
+        Vec3v<D> away;
+        V<D> slope;
+        KernelValue<D> value;
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            const NearestPart<D> part = nearest_part<shape>(
+                d, entry, k, 1 / LanesOf<kind>::argument_scale, p, 0x1p-30, 0x1p-50);
+            away = part.half_gradient;
+            value = LanesOf<kind>::at(d, part.s);
+            slope =
+                hn::Mul(hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength), value.dk);
+            defined = hn::And(defined, hn::Or(part.defined, hn::Eq(value.dk, hn::Zero(d))));
+        } else {
+            V<D> square;
+            away = away_from<shape>(d, entry[k], p, square);
+            value = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
+            const double inverse_square =
+                entry[k].inverse_square * (1 / LanesOf<kind>::argument_scale);
+            slope = hn::Mul(
+                hn::Set(d, 2 * LanesOf<kind>::slope_sign * entry[k].strength * inverse_square),
+                value.dk);
+            if constexpr (SkeletonOf<shape>::has_kinks) {
+                defined = hn::And(
+                    defined, hn::Or(LanesOfShape<shape>::is_defined(d, entry[k], inverse_square, p),
+                                    hn::Eq(value.dk, hn::Zero(d))));
+            }
+        }
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
-        if constexpr (SkeletonOf<shape>::has_kinks) {
-            defined = hn::And(
-                defined, hn::Or(LanesOfShape<shape>::is_defined(d, entry[k], inverse_square, p),
-                                hn::Eq(value.dk, hn::Zero(d))));
-        }
         if (entry[k].strength > 0) {
             const Color& color = field.color[element[k]];
             const V<D> part = hn::Mul(hn::Set(d, entry[k].strength), value.k);
@@ -111,16 +168,29 @@ struct FloatSurfaceSum {
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_float_surface(F d, const BundleEntry<float>* entry,
                                   const std::uint32_t* element, std::uint32_t count,
-                                  const Field& field, const Vec3v<F>& p, FloatSurfaceSum& sum) {
+                                  const Field& field, const Vec3v<F>& p, FloatSurfaceSum& sum,
+                                  M<F>& defined) {
     constexpr auto to_slope =
         static_cast<float>(2 * LanesOf<kind>::slope_sign / LanesOf<kind>::argument_scale);
     for (std::uint32_t k = 0; k < count; ++k) {
+        Vec3v<F> away;
+        V<F> slope;
+        KernelValue<F> value;
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            // 2 q eta + eta^2 of both is less than the gap, and the turn is what a look may be off by.
+            const NearestPart<F> part = nearest_part<shape>(d, entry, k, 1, p, 0x1p-8, 0x1p-20);
+            away = part.half_gradient;
+            value = LanesOf<kind>::at(d, part.s);
+            slope = hn::Mul(hn::Set(d, to_slope * entry[k].strength), value.dk);
+            defined = hn::And(defined, part.defined);
+        } else {
+            V<F> square;
+            away = away_from<shape>(d, entry[k], p, square);
+            value = LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, entry[k].inverse_square)));
+            slope = hn::Mul(hn::Set(d, to_slope * entry[k].strength * entry[k].inverse_square),
+                            value.dk);
+        }
         const BundleEntry<float>& e = entry[k];
-        V<F> square;
-        const Vec3v<F> away = away_from<shape>(d, e, p, square);
-        const KernelValue<F> value =
-            LanesOf<kind>::at(d, hn::Mul(square, hn::Set(d, e.inverse_square)));
-        const V<F> slope = hn::Mul(hn::Set(d, to_slope * e.strength * e.inverse_square), value.dk);
         sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                         hn::MulAdd(slope, away.y, sum.gradient.y),
                         hn::MulAdd(slope, away.z, sum.gradient.z)};
@@ -171,15 +241,18 @@ SeenSurfaces look(const Window& window, const Field& field, double unit, double 
                          hn::MulAdd(t, rays.direction.y, rays.middle.y),
                          hn::MulAdd(t, rays.direction.z, rays.middle.z)};
         FloatSurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
+        M<F> defined = wanted;
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t group,
                                                                  std::uint32_t count) HWY_ATTR {
                 add_float_surface<shape, kind>(d, stage->entry.data() + group,
-                                               stage->element.data() + group, count, field, p, sum);
+                                               stage->element.data() + group, count, field, p, sum,
+                                               defined);
             });
         }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));
-        M<F> firm = hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * bounds.slope)));
+        M<F> firm = hn::And(
+            defined, hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * bounds.slope))));
         const V<F> inverse = hn::Div(hn::Set(d, -1.0F), length);
         Vec3v<F> color;
         if (field.one_color) {

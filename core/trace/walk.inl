@@ -65,6 +65,44 @@ struct Stage<double> {
 
 constexpr int most_steps = 48;
 
+// Whether a stage has elements of several parts. Where b < 0, and f is the least of several branches, all
+// of these have to rise.
+struct JoinedEntries {
+    bool some_add = false, some_carve = false;
+    void add(const JoinedEntries& others) {
+        some_add = some_add || others.some_add;
+        some_carve = some_carve || others.some_carve;
+    }
+};
+
+template <class Real>
+JoinedEntries joined_entries(const StageEntries<Real>& stage) {
+    JoinedEntries joined;
+    for_groups(stage, [&]<Shape shape, KernelKind>(std::size_t first, std::uint32_t count) {
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            for (std::uint32_t k = 0; k < count; ++k) {
+                (stage.entry[first + k].strength > 0 ? joined.some_add : joined.some_carve) = true;
+            }
+        }
+    });
+    return joined;
+}
+
+// Of f's other branches, joined elements with b > 0 being the greatest of several parts: on the way to
+// the zero x of the parabola below the one that is known, each rises all along, if its slope is at
+// least half of that one's, or stays below 0, if it is less.
+template <class Tag>
+HWY_INLINE M<Tag> no_other_first(Tag d, V<Tag> f_hi, V<Tag> slope_lo, V<Tag> rise, V<Tag> fall,
+                                 V<Tag> x) {
+    using Real = hn::TFromD<Tag>;
+    const V<Tag> half = hn::Set(d, Real{0.5}), slope = hn::Mul(slope_lo, half);
+    const V<Tag> gain = hn::Mul(hn::MulAdd(hn::Mul(rise, half), x, slope), x);
+    const V<Tag> room = hn::Mul(f_hi, hn::Set(d, Real{2} * StepMargins<Real>::tight - 1));
+    return hn::And(hn::Gt(slope, hn::Mul(hn::Mul(fall, x),
+                                         hn::Set(d, 1 + Real{2} * StepMargins<Real>::tight))),
+                   hn::Lt(gain, room));
+}
+
 template <class Tag>
 Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
                   std::size_t begin_lane, std::size_t end_lane, Lanes& lanes, Cancellation& stop) {
@@ -89,6 +127,10 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     const V<Tag> settled = c(stage.settled * stage.end());
     const V<Tag> zero = hn::Zero(d), one_more = c(1 + Margin::tight);
     const V<Tag> least = c(least_square<Real>);
+    JoinedEntries joined = joined_entries(stage.entries());
+    if constexpr (has_weak) joined.add(joined_entries(stage.more_entries()));
+    const V<Tag> error = c(2 * widened * (bounds.above + bounds.below));
+    const V<Tag> least_reach = c(0x1p-10 * stage.end());
     Walked walked;
     std::uint64_t work = N * stage.entries().size;  // of a step, at most
     if constexpr (has_weak) work += N * stage.more_entries().size;
@@ -110,7 +152,11 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
-            FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction);
+            // Up to the end of the window.
+            const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
+            const Vicinity<Tag> near{hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)),
+                                     error};
+            FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction, near);
             V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
             if constexpr (has_weak) {
                 const M<Tag> close = hn::And(
@@ -119,9 +165,12 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
                 if (stage.more_entries().size > 0 && !hn::AllFalse(d, close)) {
                     walked.close_steps += hn::CountTrue(d, close);
                     FieldValue<Tag> sum = value;
-                    add(d, stage.more_entries(), p, direction, sum);
+                    add(d, stage.more_entries(), p, direction, near, sum);
                     value = {hn::IfThenElse(close, sum.f, value.f),
-                             hn::IfThenElse(close, sum.slope, value.slope)};
+                             hn::IfThenElse(close, sum.slope, value.slope),
+                             hn::IfThenElse(close, sum.above, value.above),
+                             hn::IfThenElse(close, sum.below, value.below),
+                             hn::IfThenElse(close, sum.anywhere, value.anywhere)};
                     const StageBounds& closer = stage.close_bounds();
                     above = hn::IfThenElse(close, c(closer.above * widened), above);
                     below = hn::IfThenElse(close, c(closer.below * widened), below);
@@ -140,15 +189,20 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             // f(tau) < 0 must be certain for anything else to be.
             const V<Tag> f_hi = hn::Add(value.f, above);
             const V<Tag> f_lo = hn::Mul(hn::Sub(value.f, below), one_more);
-            const V<Tag> slope_lo = hn::Sub(value.slope, slope_error);
-            const V<Tag> slope_hi = hn::Add(value.slope, slope_error);
+            const V<Tag> slope_lo =
+                hn::Sub(value.slope,
+                        joined.some_carve ? hn::Add(slope_error, value.anywhere) : slope_error);
+            const V<Tag> slope_hi = hn::Add(hn::Add(value.slope, slope_error), value.above);
             undecided = hn::Or(undecided, hn::And(walking, hn::Not(hn::Lt(f_hi, zero))));
             walking = hn::AndNot(undecided, walking);
 
             // The parabola below f: with a zero in the window, g rises up to there.
             const LatestZero<Tag> latest = latest_zero(d, f_lo, slope_lo, fall);
             const V<Tag> latest_tau = hn::Add(tau, latest.x);
-            const M<Tag> rises = hn::And(walking, hn::And(latest.is_firm, hn::Le(latest_tau, end)));
+            M<Tag> rises = hn::And(walking, hn::And(latest.is_firm, hn::Le(latest_tau, end)));
+            if (joined.some_add) {
+                rises = hn::And(rises, no_other_first(d, f_hi, slope_lo, rise, fall, latest.x));
+            }
 
             // The parabola above f: up to its zero there is no root.
             const V<Tag> quotient = parabola_zero(d, f_hi, slope_hi, rise);

@@ -43,6 +43,7 @@ inline constexpr auto every_kind = [] {
 
 inline std::string word_of(Shape shape) {
     if (shape == Shape::taper) return "taper";
+    if (shape == Shape::tapered_polyline) return "tapered_polyline";
     return std::string(shape_words[static_cast<std::size_t>(shape)]);
 }
 inline std::string word_of(KernelKind kernel) { return kernel_word(kernel); }
@@ -57,7 +58,20 @@ inline constexpr auto name_of_kind = [](const auto& info) { return word_of(info.
 // A skeleton of that shape, its members as they are by default.
 inline Skeleton skeleton_of(Shape shape) {
     if (shape == Shape::taper) return SegmentSkeleton{};
+    if (shape == Shape::tapered_polyline) return PolylineSkeleton();
     return with_shape(shape, []<class S>() { return Skeleton(S{}); });
+}
+
+// So many widths as the skeleton has places for them, 0 where it has no list of them.
+inline std::size_t width_places(const Skeleton& skeleton) {
+    return std::visit(
+        []<class S>(const S& s) -> std::size_t {
+            if constexpr (S::may_taper)
+                return s.width_places();
+            else
+                return 0;
+        },
+        skeleton);
 }
 
 // The members of a skeleton by what they may be, each kind in the order of the file format.
@@ -78,6 +92,9 @@ struct Members {
         (kind == MemberKind::direction ? directions : places).push_back(&value);
     }
     void add(MemberKind, double& value) { lengths.push_back(&value); }
+    void add(MemberKind, std::vector<Vec3d>& list) {
+        for (Vec3d& value : list) places.push_back(&value);
+    }
 };
 
 }  // namespace ivory::tools

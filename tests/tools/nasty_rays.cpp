@@ -120,7 +120,8 @@ class Maker {
         const Vec3d v = times(1 / length(n), cross);
         for (const Vec3d& side : {u, times(-1, u), v, times(-1, v)}) {
             points.push_back(std::visit(
-                [&]<class S>(const S& s) { return S::farthest(s.columns(), {}, side); }, skeleton));
+                [&]<class S>(const S& s) { return S::farthest(part_of(s, 0), {}, side); },
+                skeleton));
         }
         return points;
     }

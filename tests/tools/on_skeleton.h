@@ -13,16 +13,24 @@ namespace ivory::tools {
 inline Vec3d nearest_place(const Skeleton& skeleton, const Vec3d& p) {
     return std::visit(
         [&]<class S>(const S& s) {
-            const SkeletonColumns columns = s.columns();
-            return p - S::nearest(columns, p - columns.a, 1).away;
+            double least = infinity<double>;
+            Vec3d place;
+            for (std::size_t part = 0; part < parts_of(s); ++part) {
+                const SkeletonColumns columns = part_of(s, part);
+                const Nearest at = S::nearest(columns, p - columns.a, 1);
+                if (at.s < least) place = p - at.away;
+                least = std::min(least, at.s);
+            }
+            return place;
         },
         skeleton);
 }
 
 // Any place of the skeleton, its ends often.
 inline Vec3d on_skeleton(const Skeleton& skeleton, Random& random) {
-    const Ball ball =
-        std::visit([]<class S>(const S& s) { return S::ball(s.columns()); }, skeleton);
+    const Ball ball = std::visit(
+        [&]<class S>(const S& s) { return S::ball(part_of(s, random.below(parts_of(s)))); },
+        skeleton);
     return nearest_place(skeleton, ball.center + random.in_cube(2 * ball.radius));
 }
 

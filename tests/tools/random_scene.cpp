@@ -19,6 +19,9 @@ Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + 
 // Its first place is that one, others are near it; some directions are along an axis.
 Skeleton random_skeleton(Shape shape, const Vec3d& first, Random& random) {
     Skeleton skeleton = skeleton_of(shape);
+    if (auto* const chain = std::get_if<PolylineSkeleton>(&skeleton)) {
+        chain->points.resize(2 + random.below(5));
+    }
     const Members members(skeleton);
     for (Vec3d* const place : members.places) {
         const bool is_apart = place != members.places.front() && !random.chance(0.05);
@@ -49,10 +52,12 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     element.width = std::exp(random.uniform(std::log(0.3), std::log(1.5)));
     element.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
     element.visible = !random.chance(0.05);
-    if (recipe.only && recipe.only->shape == Shape::taper) {
-        const double other = element.width * std::exp(random.uniform(-1.6, 1.6));
-        element.widths = {element.width, other};
-        element.width = std::min(element.width, other);
+    if (recipe.only && is_taper(recipe.only->shape)) {
+        element.widths = {element.width};
+        while (element.widths.size() < width_places(element.skeleton)) {
+            element.widths.push_back(element.width * std::exp(random.uniform(-1.6, 1.6)));
+        }
+        element.width = *std::min_element(element.widths.begin(), element.widths.end());
     }
     return element;
 }

@@ -103,6 +103,12 @@ inline Affine on_line(double slope, const Span& offset, const Affine& a) {
 // max(x, 0) is convex: below the chord's ends, above its corner.
 [[nodiscard]] Affine at_least_0(const Affine& a);
 
+// min(a, b) = a - max(a - b, 0).
+inline Affine least(const Affine& a, const Affine& b) {
+    const Span minus(-1.0);
+    return a + times(minus, at_least_0(a + times(minus, b)));
+}
+
 inline Affine enclosed(const Affine&, const Span& value, const Span&) {
     return affine_detail::rounded(midpoint(value), 0, radius(value), mag(value));
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/field/surface.h"
 #include "core/interval/quick.h"
@@ -13,6 +14,7 @@ namespace {
 
 using natural::Range;
 using natural::RayElement;
+using natural::Span;
 
 // The distance as the paper prints it.
 Range printed_square(const RayElement& e, const Range& t) {
@@ -24,9 +26,13 @@ Range printed_square(const RayElement& e, const Range& t) {
 // put in: each component of P - C is one interval, each foot on a segment too.
 Range natural_extension(const natural::RayField& field, const Range& t) {
     Range sum{field.constant()};
+    Range parts{Span(infinity<double>)};  // the least of an element's so far
     for (const RayElement& e : field.elements()) {
         const Range s = e.bounded ? printed_square(e, t) : Range{{0.0, infinity<double>}};
-        sum = sum + times(e.strength, kernel(e.kernel, s));
+        parts = least(parts, s);
+        if (e.joins) continue;
+        sum = sum + times(e.strength, kernel(e.kernel, parts));
+        parts = {Span(infinity<double>)};
     }
     return sum;
 }
@@ -86,9 +92,10 @@ SurfacePoint Bisection::surface(const Field& field, const ElementList& list, con
         gradient[axis] = value(field, list, after) - value(field, list, before);
     }
     Vec3d color;
-    for (const std::uint32_t i : list.elements) {
-        color = color + (element_value(field, i, p) / field.threshold) * field.color[i];
-    }
+    for_elements(field, list.elements, [&](std::span<const std::uint32_t> parts) {
+        const double share = element_value(field, parts, p) / field.threshold;
+        color = color + share * field.color[parts[0]];
+    });
     return {outward_normal(gradient), color};
 }
 

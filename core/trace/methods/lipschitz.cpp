@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace ivory {
 namespace {
@@ -20,7 +21,7 @@ double lipschitz_bound(const Field& field, const ElementList& list, const Scaled
                        int exponent) {
     const double speed = std::sqrt(dot(ray.direction, ray.direction));
     double sum = 0;
-    for (const std::uint32_t i : list.elements) {
+    const auto steepest_of = [&](std::uint32_t i) {
         const Ball ball =
             with_field_shape(field.shape[i], [&]<class S>() { return S::ball(field.columns(i)); });
         const Vec3d away = ball.center - ray.origin;
@@ -31,8 +32,13 @@ double lipschitz_bound(const Field& field, const ElementList& list, const Scaled
         const double distance = least / speed * (1 - 8 * u) - ball.radius * (1 + 4 * u);
         const double q = distance > 0 ? distance / field.greatest_width_of(i) * (1 - 8 * u) : 0;
         const double strength = std::ldexp(std::abs(field.strength[i]), -exponent);
-        sum += strength * steepest_beyond(field.kernel[i], q) / field.width[i] + 1e-300;
-    }
+        return strength * steepest_beyond(field.kernel[i], q) / field.width[i] + 1e-300;
+    };
+    for_elements(field, list.elements, [&](std::span<const std::uint32_t> parts) {
+        double steepest = 0;
+        for (const std::uint32_t i : parts) steepest = std::max(steepest, steepest_of(i));
+        sum += steepest;
+    });
     return sum * speed * (1 + (static_cast<double>(list.elements.size()) + 16) * u);
 }
 

@@ -19,10 +19,15 @@ void RayField::build(const Field& field, const ElementList& list, const Ray& ray
             direction[axis] = {next_down(d), next_up(d)};
         }
     }
+    std::uint32_t last = 0;  // source of the one before
     for (const std::uint32_t i : list.elements) {
         RayElement& e = elements_.emplace_back();
         e.shape = field.shape[i];
         e.kernel = field.kernel[i];
+        if (elements_.size() > 1 && is_joined(e.shape) && field.source[i] == last) {
+            elements_[elements_.size() - 2].joins = true;
+        }
+        last = field.source[i];
         e.strength = Span(field.strength[i]);
         const Span scale = quick::div(Span(1.0), Span(field.width[i]));
         const Vector rate = times(scale, direction);

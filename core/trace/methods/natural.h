@@ -5,7 +5,7 @@
 // A vector from a skeleton is linear in t, start + t rate (core/shape/natural.h); s = q^2 is what the
 // shape's file says, in units of the element's width; then f = sum of b k(s) - T.
 //
-// A Number has: linear(start, rate, t), sum and difference, sqr, sqrt, at_least_0, scaled by an
+// A Number has: linear(start, rate, t), sum and difference, sqr, sqrt, at_least_0, least, scaled by an
 // interval, kernel(kind, s), any_kernel (any k in [0, 1], any slope), enclosed (what is known of
 // values and slopes over t alone), range(x), and, where hulling the cases of a clamped foot is not the
 // best it can do, segment_square.
@@ -29,6 +29,7 @@ struct RayElement : RaySkeleton {
     Shape shape = Shape::point;
     KernelKind kernel = KernelKind::blinn;
     Span strength;
+    bool joins = false;  // the next one is another part of the same element
 };
 
 // All elements of a list seen from one ray. It keeps its memory from ray to ray.
@@ -69,8 +70,23 @@ template <class Number>
 template <class Number>
 [[nodiscard]] Number extension(const RayField& field, const Number& t) {
     Number sum = constant_like(field.constant(), t);
-    for (const RayElement& e : field.elements()) {
-        sum = sum + times(e.strength, e.bounded ? kernel(e.kernel, square(e, t)) : any_kernel(t));
+    const std::vector<RayElement>& elements = field.elements();
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const RayElement& e = elements[i];
+        if (!e.joins) {
+            sum =
+                sum + times(e.strength, e.bounded ? kernel(e.kernel, square(e, t)) : any_kernel(t));
+            continue;
+        }
+        // the least of its parts' squares
+        bool bounded = e.bounded;
+        Number s = bounded ? square(e, t) : any_kernel(t);
+        while (elements[i].joins) {
+            const RayElement& part = elements[++i];
+            bounded = bounded && part.bounded;
+            if (bounded) s = least(s, square(part, t));
+        }
+        sum = sum + times(e.strength, bounded ? kernel(e.kernel, s) : any_kernel(t));
     }
     return sum;
 }

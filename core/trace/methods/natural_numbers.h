@@ -23,6 +23,7 @@ inline Plain sqr(Plain a) { return {a.x * a.x}; }
 inline Plain sqrt(Plain a) { return {std::sqrt(a.x)}; }
 inline Plain at_least_0(Plain a) { return {std::max(a.x, 0.0)}; }
 inline Plain hull(Plain, Plain b) { return b; }
+inline Plain least(Plain a, Plain b) { return {std::min(a.x, b.x)}; }
 inline Span range(Plain a) { return Span(a.x); }
 inline Plain times(const Span& s, Plain a) { return {s.lo * a.x}; }
 inline Plain any_kernel(Plain) { return {0.0}; }
@@ -65,6 +66,9 @@ inline Range sqr(const Range& a) { return {quick::sqr(a.x)}; }
 inline Range sqrt(const Range& a) { return {quick::sqrt(a.x)}; }
 inline Range at_least_0(const Range& a) { return {{std::max(a.x.lo, 0.0), std::max(a.x.hi, 0.0)}}; }
 inline Range hull(const Range& a, const Range& b) { return {hull(a.x, b.x)}; }
+inline Range least(const Range& a, const Range& b) {
+    return {{std::min(a.x.lo, b.x.lo), std::min(a.x.hi, b.x.hi)}};
+}
 inline Span range(const Range& a) { return a.x; }
 inline Range times(const Span& s, const Range& a) { return {multiple(s, a.x)}; }
 inline Range any_kernel(const Range&) { return {{0.0, 1.0}}; }
@@ -102,6 +106,11 @@ inline Dual at_least_0(const Dual& a) {
     return {{0.0, a.x.hi}, hull(a.slope, Span(0.0))};
 }
 inline Dual hull(const Dual& a, const Dual& b) { return {hull(a.x, b.x), hull(a.slope, b.slope)}; }
+inline Dual least(const Dual& a, const Dual& b) {
+    if (a.x.hi < b.x.lo) return a;
+    if (b.x.hi < a.x.lo) return b;
+    return {{std::min(a.x.lo, b.x.lo), std::min(a.x.hi, b.x.hi)}, hull(a.slope, b.slope)};
+}
 inline Span range(const Dual& a) { return a.x; }
 inline Dual times(const Span& s, const Dual& a) { return {multiple(s, a.x), multiple(s, a.slope)}; }
 inline Dual any_kernel(const Dual&) { return {{0.0, 1.0}, Span::entire()}; }

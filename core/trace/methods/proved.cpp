@@ -88,7 +88,7 @@ Found search_from(double outside_until, const Field& field, const ElementList& l
     if (isolation.status == Status::hit && width > 2 * cell) {
         const FieldSample middle =
             sample(field, list, scaled_ray.origin, scaled_ray.direction, midpoint(isolation.t));
-        if (!(width <= in_t(search, options.tolerance * field.width[middle.strongest])))
+        if (!(width <= in_t(search, options.tolerance * field.width_of_element(middle.strongest))))
             isolation.status = Status::unresolved;
     }
     isolation.t = scaled_ray.unscaled(isolation.t);

@@ -14,6 +14,7 @@
 #include "tests/reference/multiprecision.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/nasty_rays.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -119,10 +120,11 @@ void for_views(Shape shape, std::uint64_t own_seed, tools::SceneRecipe recipe, c
                 if (!(span.lo < span.hi)) continue;
                 for (std::size_t i = 0; i < field.size(); ++i) {
                     const double cut = random.chance(0.5) ? field.cut[i] : random.uniform(0, 4);
-                    View view{{},
-                              {scene.elements[field.source[i]], {ray.origin, ray.direction}, 0},
-                              span,
-                              cut};
+                    View view{
+                        {},
+                        {tools::element_of_part(scene, field, i), {ray.origin, ray.direction}, 0},
+                        span,
+                        cut};
                     along_ray(field, i, ray.origin, ray.direction, span, cut, view.along);
                     SCOPED_TRACE(tools::word_of(kernel) + ", seed " + std::to_string(seed) + ", " +
                                  std::string(tools::ray_kind_words[kind]) + ", element " +

@@ -13,6 +13,7 @@
 #include "tests/reference/reference.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/on_skeleton.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -78,7 +79,13 @@ double extreme(const Skeleton& skeleton, std::size_t axis, double sign) {
     Vec3d direction;
     direction[axis] = sign;
     return std::visit(
-        [&]<class S>(const S& s) { return S::farthest(s.columns(), {}, direction)[axis]; },
+        [&]<class S>(const S& s) {
+            double most = -infinity<double>;
+            for (std::size_t part = 0; part < parts_of(s); ++part) {
+                most = std::max(most, sign * S::farthest(part_of(s, part), {}, direction)[axis]);
+            }
+            return sign * most;
+        },
         skeleton);
 }
 
@@ -126,14 +133,20 @@ TEST_P(BoundingBoxOf, BoxOfOneElementTouchesItsSolid) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Scene scene = tools::random_scene({.elements = 1, .only = GetParam()}, seed);
         scene.threshold = 0.5 * scene.elements[0].strength;
-        const std::vector<double>& widths = scene.elements[0].widths;
-        const double widest =
-            widths.empty() ? scene.elements[0].width : std::max(widths[0], widths[1]);
-        const double reach = q * widest;
-        const Box3 box = compile(scene).reach_box;
+        const Field field = compile(scene);
+        const Box3& box = field.reach_box;
         for (std::size_t k = 0; k < 3; ++k) {
-            EXPECT_NEAR(box.lo[k], extreme(scene.elements[0].skeleton, k, -1) - reach, 1e-12);
-            EXPECT_NEAR(box.hi[k], extreme(scene.elements[0].skeleton, k, 1) + reach, 1e-12);
+            double lo = infinity<double>, hi = -infinity<double>;
+            for (std::size_t part = 0; part < field.size(); ++part) {
+                const Element of_part = tools::element_of_part(scene, field, part);
+                const std::vector<double>& widths = of_part.widths;
+                const double reach =
+                    q * (widths.empty() ? of_part.width : std::max(widths[0], widths[1]));
+                lo = std::min(lo, extreme(of_part.skeleton, k, -1) - reach);
+                hi = std::max(hi, extreme(of_part.skeleton, k, 1) + reach);
+            }
+            EXPECT_NEAR(box.lo[k], lo, 1e-12);
+            EXPECT_NEAR(box.hi[k], hi, 1e-12);
         }
     }
 }
@@ -210,8 +223,10 @@ TEST_P(SkeletonBoxOf, HoldsTheSkeletonAndIsTight) {
         Random random(seed);
         const Scene scene = tools::random_scene(
             {.elements = 1, .only = tools::ElementKind{GetParam(), KernelKind{}}}, seed);
-        const Skeleton& skeleton = scene.elements[0].skeleton;
-        const Box3 box = skeleton_box(compile(scene), 0);
+        const Field field = compile(scene);
+        const std::size_t part = random.below(field.size());
+        const Skeleton skeleton = tools::element_of_part(scene, field, part).skeleton;
+        const Box3 box = skeleton_box(field, part);
         for (int n = 0; n < 50; ++n) {
             const Vec3d p = tools::on_skeleton(skeleton, random);
             for (std::size_t k = 0; k < 3; ++k) {

@@ -16,6 +16,7 @@
 #include "tests/core/trace/bundle_windows.h"
 #include "tests/reference/reference.h"
 #include "tests/tools/kinds.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -69,16 +70,12 @@ TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
                                        const Window& window, double scale, const Vec3d& d,
                                        Random& random) {
         const Vec3d p = place(bundle.origin, random.uniform(window.begin, window.end), d);
-        double above = 0, below = 0;
-        for (std::uint32_t i = 0; i < field.size(); ++i) {
-            const auto is_in = [i](std::span<const std::uint32_t> kept) {
-                return std::find(kept.begin(), kept.end(), i) != kept.end();
-            };
-            if (is_in(window.fine.elements()) || is_in(window.fine_in_float.elements())) continue;
-            const double value = element_value(field, i, p) * scale;
-            (value > 0 ? above : below) += std::abs(value);
-            left_out += value != 0;
-        }
+        std::vector<bool> kept(field.size(), false);
+        for (const std::uint32_t i : window.fine.elements()) kept[i] = true;
+        for (const std::uint32_t i : window.fine_in_float.elements()) kept[i] = true;
+        const tools::LeftOutThere there = tools::left_out_at(field, kept, p);
+        left_out += there.count;
+        const double above = there.above * scale, below = there.below * scale;
         ASSERT_LE(above, window.fine_bounds.above);
         ASSERT_LE(below, window.fine_bounds.below);
         share =
@@ -376,8 +373,9 @@ TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
                         double scale, const Vec3d& d, Random& random) {
             const auto has_kinks = [](const auto& stage) {
                 const std::span entries(stage.entry.data(), stage.size);
-                return std::any_of(entries.begin(), entries.end(),
-                                   [](const auto& entry) { return entry.slope == 0; });
+                return std::any_of(entries.begin(), entries.end(), [](const auto& entry) {
+                    return entry.slope == 0 || entry.joins != 0;
+                });
             };
             if (has_kinks(window.fine) || has_kinks(window.fine_in_float)) return;
             const double a = random.uniform(window.begin, window.end);
@@ -396,7 +394,7 @@ TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
                 {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
         });
     std::printf("%d windows, up to %.3f of a bound\n", windows, share);
-    EXPECT_GT(windows, 400);
+    EXPECT_GT(windows, 150);
     EXPECT_GT(share, 0.5);
 }
 

@@ -18,6 +18,7 @@
 #include "tests/core/trace/bundle_windows.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/on_skeleton.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -51,11 +52,13 @@ TEST(Clusters, HoldTheirMembers) {
         double above = 0, below = 0;
         for (std::uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
             ASSERT_EQ(clusters.of(i), c);
-            (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+            if (i == clusters.first[c] || !field.joins_next(i - 1)) {
+                (field.strength[i] > 0 ? above : below) += std::abs(field.strength[i]);
+            }
             ASSERT_LE(clusters.inverse_square[c], 1 / (field.width[i] * field.width[i]));
             for (int n = 0; n < 5; ++n) {
                 const Vec3d p =
-                    tools::on_skeleton(scene.elements[field.source[i]].skeleton, random);
+                    tools::on_skeleton(tools::element_of_part(scene, field, i).skeleton, random);
                 ASSERT_LE(length(p - center), clusters.radius[c] * (1 + 1e-12));
             }
         }
@@ -63,8 +66,10 @@ TEST(Clusters, HoldTheirMembers) {
         ASSERT_GE(clusters.below[c], below);
     }
     for (std::size_t group = 0; group < field_groups; ++group) {
-        const std::uint32_t first = clusters.first_of_group[group];
-        ASSERT_EQ(clusters.first[first], field.first[group]);
+        ASSERT_EQ(clusters.first_of_group.has(group), field.first.has(group));
+        if (!field.first.has(group)) continue;
+        const std::uint32_t first = clusters.first_of_group.range(group).first;
+        ASSERT_EQ(clusters.first[first], field.first.range(group).first);
     }
 }
 
@@ -82,8 +87,11 @@ TEST(Clusters, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Clusters, FewElementsHaveNone) {
-    EXPECT_TRUE(compile(crowd(least_clustered - 1, 62)).clusters.empty());
-    EXPECT_FALSE(compile(crowd(least_clustered, 62)).clusters.empty());
+    Scene scene = crowd(least_clustered, 62);
+    for (Element& element : scene.elements) element.skeleton = PointSkeleton{place_of(element)};
+    EXPECT_FALSE(compile(scene).clusters.empty());
+    scene.elements.pop_back();
+    EXPECT_TRUE(compile(scene).clusters.empty());
     const Field field = compile(crowd(20, 62));
     EXPECT_EQ(all_clusters(field).elements.size(), field.size());
     EXPECT_TRUE(all_clusters(field).clusters.empty());
@@ -119,15 +127,10 @@ void expect_stands_for_all(const Field& field, const ElementList& list, const Co
             ASSERT_LT(sample(field, p).value, 1e-12);
             continue;
         }
-        double above = 0, below = 0;
-        for (std::size_t i = 0; i < field.size(); ++i) {
-            if (listed[i]) continue;
-            const double value = element_value(field, i, p);
-            (value > 0 ? above : below) += value;
-            ++left_out;
-        }
-        ASSERT_LE(above * (1 - 1e-9), list.left_out.hi);
-        ASSERT_GE(below * (1 - 1e-9), list.left_out.lo);
+        const tools::LeftOutThere there = tools::left_out_at(field, listed, p);
+        left_out += there.count;
+        ASSERT_LE(there.above * (1 - 1e-9), list.left_out.hi);
+        ASSERT_LE(there.below * (1 - 1e-9), -list.left_out.lo);
     }
 }
 
@@ -219,14 +222,10 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
                         EXPECT_FALSE(kept[i]);
                         kept[i] = true;
                     }
-                    double above = 0, below = 0;
-                    for (std::size_t i = 0; i < field.size(); ++i) {
-                        if (kept[i]) continue;
-                        const double value = element_value(field, i, p) * field.scale;
-                        (value > 0 ? above : below) += std::abs(value);
-                    }
-                    EXPECT_LE(above * (1 - 1e-9), window.fine_bounds.above);
-                    EXPECT_LE(below * (1 - 1e-9), window.fine_bounds.below);
+                    const tools::LeftOutThere there = tools::left_out_at(field, kept, p);
+                    const double share = field.scale * (1 - 1e-9);
+                    EXPECT_LE(there.above * share, window.fine_bounds.above);
+                    EXPECT_LE(there.below * share, window.fine_bounds.below);
                     return true;
                 });
             windows += static_cast<int>(seen.size());
@@ -268,6 +267,7 @@ TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
     scene.threshold = 0.5;
     for (Element& element : scene.elements) {
         element.strength = element.width = 1;
+        element.widths.assign(element.widths.size(), 1);
         element.visible = true;
         const Vec3d by = random.in_cube(200) - place_of(element);
         for (Vec3d* const place : tools::Members(element.skeleton).places) *place = *place + by;
@@ -281,7 +281,7 @@ TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
     LocalElements near, nearer;
     for (int n = 0; n < 2000; ++n) {
         const std::size_t aim = random.below(field.size());
-        const Skeleton& skeleton = scene.elements[field.source[aim]].skeleton;
+        const Skeleton skeleton = tools::element_of_part(scene, field, aim).skeleton;
         const Vec3d target = tools::on_skeleton(skeleton, random);
         const Vec3d origin = target + 60.0 * unit(random.in_cube(1));
         const Vec3d axis = unit(target + random.in_cube(0.7) - origin);

@@ -83,6 +83,7 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed, Seen
         expect_meets(e.right, right.f_lo, right.f_hi, "right", t1);
         expect_meets(e.left_slope, left.df_lo, left.df_hi, "left slope", t0);
         expect_meets(along.at(t0), left.f_lo, left.f_hi, "at", t0);
+        const bool has_joined = std::any_of(field.shape.begin(), field.shape.end(), is_joined);
         double before = t0;
         Exact at_before = left;
         Interval<double> f = hull(Interval<double>(left.f_lo), Interval<double>(right.f_lo));
@@ -94,9 +95,13 @@ void check_ray(const Scene& scene, const Ray& original, std::uint64_t seed, Seen
             expect_meets(e.slope, at.df_lo, at.df_hi, "f'", t);
             f = hull(f, Interval<double>(at.f_lo));
             df = hull(df, Interval<double>(at.df_lo));
+            const Interval<double> x = Interval<double>(t) - Interval<double>(t0);
+            expect_meets(e.left + e.left_slope * x + Interval<double>(0.5) * e.curvature * sqr(x),
+                         at.f_lo, at.f_hi, "f by the left end", t);
             // By the mean value theorem f' gains between inf f'' and sup f'' times the time; an
-            // upward jump has to show as +inf, a downward one as -inf.
-            if (t > before) {
+            // upward jump has to show as +inf, a downward one as -inf, unless it is from one part of
+            // an element to another.
+            if (t > before && !has_joined) {
                 const Interval<double> gain =
                     e.curvature * (Interval<double>(t) - Interval<double>(before));
                 const double slack =

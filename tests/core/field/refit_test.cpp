@@ -10,6 +10,7 @@
 #include "core/math/direction.h"
 #include "tests/tools/kinds.h"
 #include "tests/tools/move_element.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -99,12 +100,12 @@ TEST(Refit, ClustersFollowWhatMoves) {
     for (std::size_t c = 0; c < clusters.size(); ++c) {
         const Vec3d center{clusters.x[c], clusters.y[c], clusters.z[c]};
         for (std::uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
-            const Element& element = scene.elements[field.source[i]];
+            const Element element = tools::element_of_part(scene, field, i);
             Vec3d off = place_of(element) - center;
             ASSERT_LE(std::sqrt(dot(off, off)), clusters.radius[c]);
             ASSERT_EQ(field.width[i], element.width);
             const Vec3d a =
-                std::visit([](const auto& s) { return s.columns().a; }, element.skeleton);
+                std::visit([](const auto& s) { return part_of(s, 0).a; }, element.skeleton);
             ASSERT_EQ(field.a(i), a);
             off = a - center;
             ASSERT_NEAR(double{clusters.members.x[i]}, off.x / field.unit,
@@ -140,7 +141,7 @@ TEST(Refit, WhatItCannotFollowItLeaves) {
         if (shape == shape_of_skeleton(before.elements[i].skeleton)) continue;
         scene.elements[i].skeleton = tools::skeleton_of(shape);
         scene.elements[i].widths.clear();
-        if (shape == Shape::taper) scene.elements[i].widths = {0.5, 1};
+        if (is_taper(shape)) scene.elements[i].widths = {0.5, 1};
         expect_impossible(scene);
     }
     scene = before;

@@ -58,12 +58,15 @@ void expect_stands_for_all(const Field& field, const std::vector<std::size_t>& v
                            const reference::PointValue& at, const ElementList& list) {
     RealInterval dropped(0.0);
     std::size_t next = 0;
+    bool is_kept = false;  // some part of the element
     for (std::size_t i = 0; i < field.size(); ++i) {
         if (next < list.elements.size() && list.elements[next] == i) {
             ++next;
-            continue;
+            is_kept = true;
         }
-        dropped = dropped + at.element[visible[field.source[i]]];
+        if (field.joins_next(i)) continue;
+        if (!is_kept) dropped = dropped + at.element[visible[field.source[i]]];
+        is_kept = false;
     }
     ASSERT_EQ(next, list.elements.size()) << "not ascending indices";
     ASSERT_TRUE(Real(list.left_out.lo) <= dropped.hi && dropped.lo <= Real(list.left_out.hi))

@@ -10,6 +10,7 @@
 #include "core/trace/methods/method.h"
 #include "tests/reference/reference.h"
 #include "tests/tools/kinds.h"
+#include "tests/tools/parts.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"
 
@@ -75,10 +76,10 @@ TEST_P(SurfaceOf, ValueGradientAndColorAreThoseOfTheReference) {
             const PointValue at = exact.at({p, {0, 0, 1}}, Real(0.0));
             expect_exact(exact, at, here, field.least_width, 1e-13);
             double most = 0;
-            for (std::size_t k = 0; k < field.size(); ++k) {
-                most = std::max(most, std::abs(element_value(field, k, p)));
-            }
-            EXPECT_EQ(std::abs(element_value(field, here.strongest, p)), most);
+            for_elements(field, tools::all_parts(field), [&](std::span<const std::uint32_t> parts) {
+                most = std::max(most, std::abs(element_value(field, parts, p)));
+            });
+            EXPECT_EQ(std::abs(element_value(field, std::array{here.strongest}, p)), most);
         }
     }
 }

@@ -107,7 +107,10 @@ TEST_P(IsolateOf, SurfaceOfOneElementIsWhereItsKernelIsAtTheThreshold) {
             element.strength = 1;
             Random random(seed);
             Vec3d origin = random.in_cube(6), to;
-            double width = element.width;  // at the nearest place
+            double width = element.width;                       // at the nearest place
+            if (GetParam().shape == Shape::tapered_polyline) {  // of one width after all
+                element.widths.assign(element.widths.size(), width);
+            }
             if (GetParam().shape == Shape::taper) {
                 const auto& [a, b] = std::get<SegmentSkeleton>(element.skeleton);
                 const bool narrows = element.widths[0] > element.widths[1];

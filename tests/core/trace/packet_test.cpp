@@ -176,7 +176,7 @@ std::vector<Case> one_kind_alone() {
     std::vector<Case> cases;
     for (const tools::ElementKind& kind : tools::every_kind) {
         // Of tapers an end ball that nearly holds the other leaves f'' unknown on most rays.
-        const double least_decided = kind.shape == Shape::taper ? 0.08 : 0.5;
+        const double least_decided = is_taper(kind.shape) ? 0.3 : 0.5;
         cases.push_back({tools::word_of(kind), {.elements = 6, .only = kind}, 1e-6, least_decided});
     }
     return cases;
@@ -359,7 +359,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
                                    .strength = -1e12f,
                                    .slope = 1e20f,
                                    .taper_rate = 0,
-                                   .unused = 0,
+                                   .joins = 0,
                                    .mx = 0,
                                    .my = 0,
                                    .mz = 0,

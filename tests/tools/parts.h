@@ -1,0 +1,61 @@
+// Elements of several parts (core/shape/joined.h) as tests see them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "core/field/field.h"
+#include "core/field/surface.h"
+#include "core/scene/scene.h"
+
+namespace ivory::tools {
+
+// What part i of the field would be as an element of its own: a segment of a polyline.
+inline Element element_of_part(const Scene& scene, const Field& field, std::size_t i) {
+    Element element = scene.elements[field.source[i]];
+    const auto* chain = std::get_if<PolylineSkeleton>(&element.skeleton);
+    if (chain == nullptr) return element;
+    std::size_t part = 0;
+    while (part < i && field.source[i - part - 1] == field.source[i]) ++part;
+    if (!element.widths.empty()) {
+        element.widths = {element.widths[part], element.widths[part + 1]};
+        element.width = std::min(element.widths[0], element.widths[1]);
+    }
+    element.skeleton = Skeleton(chain->segment(part));
+    return element;
+}
+
+// All parts of the field.
+inline std::vector<std::uint32_t> all_parts(const Field& field) {
+    std::vector<std::uint32_t> all(field.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    return all;
+}
+
+// What elements that are not kept, or not with all of their parts, add to the field at p and take away
+// from it.
+struct LeftOutThere {
+    double above = 0, below = 0;
+    int count = 0;  // parts that are out and would be there alone
+};
+inline LeftOutThere left_out_at(const Field& field, const std::vector<bool>& kept, const Vec3d& p) {
+    LeftOutThere there;
+    for_elements(field, all_parts(field), [&](std::span<const std::uint32_t> parts) {
+        std::vector<std::uint32_t> kept_parts;
+        for (const std::uint32_t i : parts) {
+            if (kept[i]) kept_parts.push_back(i);
+        }
+        if (kept_parts.size() == parts.size()) return;
+        double value = element_value(field, parts, p);
+        there.count += value != 0;
+        if (!kept_parts.empty()) value -= element_value(field, kept_parts, p);
+        (value > 0 ? there.above : there.below) += std::abs(value);
+    });
+    return there;
+}
+
+}  // namespace ivory::tools
