@@ -69,29 +69,33 @@ HWY_INLINE V<D> two_sum(V<D> x, V<D> y, V<D>& lost) {
     return sum;
 }
 
+template <Shape shape, KernelKind kind, bool compensated>
+HWY_NOINLINE void add_joined_fine_group(D d, const BundleEntry<double>* entry, std::uint32_t count,
+                                        const Vec3v<D>& p, const Vec3v<D>& direction,
+                                        FieldValue<D>& sum, Branches<D>& branches, V<D>& lost) {
+    for (const auto* const end = entry + count; entry != end;) {
+        const V<D> strength = hn::Set(d, entry->strength);
+        const V<D> k = add_parts<shape, kind>(d, entry, p, direction, sum.slope, branches);
+        sum.f = compensated ? two_sum(sum.f, hn::Mul(strength, k), lost)
+                            : hn::MulAdd(strength, k, sum.f);
+    }
+}
+
 // `lost`: where sums are compensated.
 template <Shape shape, KernelKind kind, bool compensated, std::size_t n>
 HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint32_t count,
                                const Vec3v<D> (&p)[n], const Vec3v<D> (&direction)[n],
-                               const Vicinity<D>& near, FieldValue<D> (&sum)[n], V<D> (&lost)[n]) {
-    const auto* const end = entry + count;
+                               FieldValue<D> (&sum)[n], Branches<D> (&branches)[n],
+                               V<D> (&lost)[n]) {
     if constexpr (SkeletonOf<shape>::is_joined) {
-        while (entry != end) {
-            const V<D> strength = hn::Set(d, entry->strength);
-            const BundleEntry<double>* next = entry;
-            for_each_of<n>([&](auto half) HWY_ATTR {
-                next = entry;
-                V<D> k;
-                FieldValue<D>& to = sum[half];
-                add_parts<shape, kind>(d, next, p[half], direction[half], near, k, to);
-                to.f = compensated ? two_sum(to.f, hn::Mul(strength, k), lost[half])
-                                   : hn::MulAdd(strength, k, to.f);
-            });
-            entry = next;
-        }
+        for_each_of<n>([&](auto half) HWY_ATTR {
+            add_joined_fine_group<shape, kind, compensated>(d, entry, count, p[half],
+                                                            direction[half], sum[half],
+                                                            branches[half], lost[half]);
+        });
         return;
     }
-    for (; entry != end; ++entry) {
+    for (const auto* const end = entry + count; entry != end; ++entry) {
         for_each_of<n>([&](auto half) HWY_ATTR {
             V<D> square;
             const Vec3v<D> away = away_from<shape>(d, *entry, p[half], square);
@@ -108,15 +112,15 @@ HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint3
 
 template <bool compensated, std::size_t n>
 HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
-                         const Vec3v<D> (&direction)[n], const Vicinity<D>& near,
-                         FieldValue<D> (&value)[n]) {
+                         const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n],
+                         Branches<D> (&branches)[n]) {
     const D d;
     V<D> lost[n];
     for_each_of<n>([&](auto half) HWY_ATTR { lost[half] = hn::Zero(d); });
     for_groups(window.fine,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first,
-                                                            count, p, direction, near, value, lost);
+                                                            count, p, direction, value, branches, lost);
                });
     if constexpr (compensated) {
         for_each_of<n>([&](auto half)
@@ -157,15 +161,17 @@ HWY_INLINE V<F> narrowed(const V<D> (&x)[n], double factor) {
 // f of the fine stage, and the slope of its entries in double.
 template <std::size_t n>
 void evaluate_fine(const Window& window, double threshold, double unit, const Vec3v<D> (&p)[n],
-                   const Vec3v<D> (&direction)[n], const Vicinity<D>& near,
-                   FieldValue<D> (&value)[n]) {
+                   const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n],
+                   Branches<D> (&branches)[n]) {
     const D d;
     const F narrow;
-    for_each_of<n>([&](auto half) HWY_ATTR { value[half] = no_field(d, -threshold); });
+    for_each_of<n>([&](auto half) HWY_ATTR {
+        value[half] = {hn::Set(d, -threshold), hn::Zero(d)};
+    });
     if (window.compensated) {
-        add_fine<true>(window, p, direction, near, value);
+        add_fine<true>(window, p, direction, value, branches);
     } else {
-        add_fine<false>(window, p, direction, near, value);
+        add_fine<false>(window, p, direction, value, branches);
     }
     if (window.fine_in_float.size == 0) return;
     V<D> x[n], y[n], z[n];
@@ -194,7 +200,8 @@ struct Enclosing {
     double threshold, unit, half_width;
     double common_cell;  // see there
     double left_out;
-    double error;  // of two values, at most
+    bool has_joined;
+    double error;  // of the difference of two values, at most
 
     // What the lines of a step are asked for: the first guess is that near, others nearer by far.
     [[nodiscard]] double reach_of_step(int step) const {
@@ -218,8 +225,9 @@ struct Enclosed {
     V<D> m;       // where to look next
     V<D> cell, inverse_cell;
 
-    // With f and its slope at m, those of parts of joined elements as far as `reach`.
-    HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value, double reach) {
+    // With f and its slope at m, and its branches as far as `reach`.
+    HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value,
+                         const Branches<D>& branches, double reach) {
         const D d;
         const Window& window = task.window;
         const auto c = [&](double x) HWY_ATTR { return hn::Set(d, x); };
@@ -231,9 +239,12 @@ struct Enclosed {
         const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
         const V<D> inverse = hn::Div(c(1), value.slope);
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
-        const V<D> others = hn::IfThenElse(hn::Le(delta, c(reach)),
-                                           hn::Max(value.above, value.below), value.anywhere);
-        const V<D> bend = hn::Add(hn::MulAdd(curvature, delta, c(bounds.slope)), others);
+        V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
+        if (task.has_joined) {
+            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, c(reach)),
+                                                hn::Max(branches.above, branches.below),
+                                                branches.anywhere));
+        }
         const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
         // Then size / slope_lo < delta, and f < -left_out at m - delta.
         const M<D> firm = hn::And(
@@ -295,13 +306,20 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&dir
         steps += open;
         Vec3v<D> p[n];
         FieldValue<D> value[n];
+        Branches<D> branches[n];
         const double reach = task.reach_of_step(step);
-        const Vicinity<D> near{hn::Set(d, (1 - 0x1p-40) / reach), hn::Set(d, task.error)};
+        if (task.has_joined) {
+            for_each_of<n>([&](auto half) HWY_ATTR {
+                branches[half].begin(hn::Set(d, (1 - 0x1p-40) / reach), hn::Set(d, task.error));
+            });
+        }
         for_each_of<n>([&](auto half) HWY_ATTR {
             p[half] = place(task.window, direction[half], enclosed[half].m);
         });
-        evaluate_fine(task.window, task.threshold, task.unit, p, direction, near, value);
-        for_each_of<n>([&](auto half) HWY_ATTR { enclosed[half].take(task, value[half], reach); });
+        evaluate_fine(task.window, task.threshold, task.unit, p, direction, value, branches);
+        for_each_of<n>([&](auto half) HWY_ATTR {
+            enclosed[half].take(task, value[half], branches[half], reach);
+        });
     }
     return steps;
 }
@@ -380,7 +398,7 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
                          HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
     const double error = 2 * (window.fine_bounds.above + window.fine_bounds.below);
     const Enclosing task{window,   threshold, unit, half_width, common_cell(half_width),
-                         left_out, error};
+                         left_out, joined_entries(window.fine).any(), error};
     const Outcome outcome{pinned, otherwise};
     Batch batch;
     std::uint64_t steps = 0;

@@ -65,29 +65,6 @@ struct Stage<double> {
 
 constexpr int most_steps = 48;
 
-// Whether a stage has elements of several parts. Where b < 0, and f is the least of several branches, all
-// of these have to rise.
-struct JoinedEntries {
-    bool some_add = false, some_carve = false;
-    void add(const JoinedEntries& others) {
-        some_add = some_add || others.some_add;
-        some_carve = some_carve || others.some_carve;
-    }
-};
-
-template <class Real>
-JoinedEntries joined_entries(const StageEntries<Real>& stage) {
-    JoinedEntries joined;
-    for_groups(stage, [&]<Shape shape, KernelKind>(std::size_t first, std::uint32_t count) {
-        if constexpr (SkeletonOf<shape>::is_joined) {
-            for (std::uint32_t k = 0; k < count; ++k) {
-                (stage.entry[first + k].strength > 0 ? joined.some_add : joined.some_carve) = true;
-            }
-        }
-    });
-    return joined;
-}
-
 // Of f's other branches, joined elements with b > 0 being the greatest of several parts: on the way to
 // the zero x of the parabola below the one that is known, each rises all along, if its slope is at
 // least half of that one's, or stays below 0, if it is less.
@@ -131,6 +108,8 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     if constexpr (has_weak) joined.add(joined_entries(stage.more_entries()));
     const V<Tag> error = c(2 * widened * (bounds.above + bounds.below));
     const V<Tag> least_reach = c(0x1p-10 * stage.end());
+    Branches<Tag> branches;
+    branches.begin(zero, zero);
     Walked walked;
     std::uint64_t work = N * stage.entries().size;  // of a step, at most
     if constexpr (has_weak) work += N * stage.more_entries().size;
@@ -152,11 +131,12 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
-            // Up to the end of the window.
-            const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
-            const Vicinity<Tag> near{hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)),
-                                     error};
-            FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction, near);
+            if (joined.any()) {  // asked for up to the end of the window
+                const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
+                branches.begin(hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)), error);
+            }
+            FieldValue<Tag> value =
+                evaluate(d, stage.entries(), threshold, p, direction, branches);
             V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
             if constexpr (has_weak) {
                 const M<Tag> close = hn::And(
@@ -165,12 +145,10 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
                 if (stage.more_entries().size > 0 && !hn::AllFalse(d, close)) {
                     walked.close_steps += hn::CountTrue(d, close);
                     FieldValue<Tag> sum = value;
-                    add(d, stage.more_entries(), p, direction, near, sum);
+                    // For lanes that are not close what is more is too much, which does no harm.
+                    add(d, stage.more_entries(), p, direction, sum, branches);
                     value = {hn::IfThenElse(close, sum.f, value.f),
-                             hn::IfThenElse(close, sum.slope, value.slope),
-                             hn::IfThenElse(close, sum.above, value.above),
-                             hn::IfThenElse(close, sum.below, value.below),
-                             hn::IfThenElse(close, sum.anywhere, value.anywhere)};
+                             hn::IfThenElse(close, sum.slope, value.slope)};
                     const StageBounds& closer = stage.close_bounds();
                     above = hn::IfThenElse(close, c(closer.above * widened), above);
                     below = hn::IfThenElse(close, c(closer.below * widened), below);
@@ -189,10 +167,11 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             // f(tau) < 0 must be certain for anything else to be.
             const V<Tag> f_hi = hn::Add(value.f, above);
             const V<Tag> f_lo = hn::Mul(hn::Sub(value.f, below), one_more);
-            const V<Tag> slope_lo =
-                hn::Sub(value.slope,
-                        joined.some_carve ? hn::Add(slope_error, value.anywhere) : slope_error);
-            const V<Tag> slope_hi = hn::Add(hn::Add(value.slope, slope_error), value.above);
+            V<Tag> slope_lo = hn::Sub(value.slope, slope_error);
+            V<Tag> slope_hi = hn::Add(value.slope, slope_error);
+            if (joined.any()) slope_hi = hn::Add(slope_hi, branches.above);
+            // Where some carve, all branches have to rise.
+            if (joined.some_carve) slope_lo = hn::Sub(slope_lo, branches.anywhere);
             undecided = hn::Or(undecided, hn::And(walking, hn::Not(hn::Lt(f_hi, zero))));
             walking = hn::AndNot(undecided, walking);
 
