@@ -148,8 +148,8 @@ Box3 box_around(const Element& element) {
                                  ? element.width
                                  : *std::max_element(element.widths.begin(), element.widths.end());
         Box3 box;
-        for (std::size_t part = 0; part < parts_of(skeleton); ++part) {
-            const SkeletonColumns columns = part_of(skeleton, part);
+        for (const SkeletonPart& part : parts_of(skeleton)) {
+            const SkeletonColumns columns = part.seen();
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 Vec3d up;
                 up[axis] = 1;

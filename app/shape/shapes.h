@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "app/shape/circle.h"
+#include "app/shape/curve.h"
 #include "app/shape/disc.h"
 #include "app/shape/point.h"
+#include "app/shape/polygon.h"
 #include "app/shape/polyline.h"
 #include "app/shape/segment.h"
 #include "app/shape/shape_in_hand.h"

@@ -20,6 +20,12 @@ double least_square(const SquaresAlongRay& squares, const ElementAlongRay&, cons
     return least;
 }
 
+// Its parts are many, and their feet dear.
+double least_square(const CurveAlongRay& arc, const ElementAlongRay&, const Interval<double>&,
+                    double) {
+    return arc.rough_least();
+}
+
 template <class Form>
 double least_square(const Form& form, const ElementAlongRay& e, const Interval<double>& span,
                     double cut) {

@@ -135,7 +135,7 @@ void bound_curvature_local_group(LocalElements& near, const Reach<float>& reach,
     BendLanes<F> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     JoinedBends<F> bends;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        const auto e = seen_local<shape>(near, reach, i);
+        const auto e = seen_local<shape>(near, near.numbers, reach, i);
         const V<F> inverse =
             add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &near.least[i]),
                             hn::LoadU(d, &near.most[i]), hn::LoadU(d, &near.peak[i]), lanes);

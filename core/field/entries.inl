@@ -56,6 +56,15 @@ HWY_INLINE V<Tag> greatest_root(Tag d, const Entering& on, const Arrivals<Tag, s
                    hn::Set(d, Margins<hn::TFromD<Tag>>::more));
 }
 
+// In widths, what `away` may turn by and still say enough of a slope in float. Where two places of a skeleton
+// may be as good as equally near that is more than rounding.
+template <Shape shape>
+inline constexpr double greatest_turn = numbered<shape> ? 0.25 : 1e-2;
+
+// Where it may be far from the nearest place, too, but always is of the skeleton.
+template <Shape shape>
+inline constexpr bool takes_any_place = numbered<shape> && SkeletonOf<shape>::has_kinks;
+
 // From the field, in double.
 template <Shape shape>
 struct FieldArrivals {
@@ -86,6 +95,14 @@ struct FieldArrivals {
         return static_cast<std::uint32_t>(active.element[i]);
     }
     [[nodiscard]] std::uint32_t source(std::size_t i) const { return field.source[element(i)]; }
+    // For the lanes of a stage.
+    template <class Real>
+    [[nodiscard]] const Real* numbers(std::size_t i) const {
+        if constexpr (sizeof(Real) == sizeof(float))
+            return field.all_numbers_in_units().of(element(i));
+        else
+            return field.all_numbers().of(element(i));
+    }
 };
 
 // From elements in float; `middle` is the window's, relative to the same place.
@@ -100,7 +117,7 @@ struct LocalArrivals {
         const F d;
         const auto place = [&](const std::vector<float>& c, float from)
                                HWY_ATTR { return hn::Sub(hn::LoadU(d, &c[i]), hn::Set(d, from)); };
-        const auto e = seen_local<shape>(near, reach, i);
+        const auto e = seen_local<shape>(near, near.numbers, reach, i);
         return {e,
                 {place(near.x, middle.x), place(near.y, middle.y), place(near.z, middle.z)},
                 hn::Sqrt(e.inverse_square),
@@ -114,6 +131,10 @@ struct LocalArrivals {
         return static_cast<std::uint32_t>(near.element[i]);
     }
     [[nodiscard]] std::int32_t source(std::size_t i) const { return near.source[i]; }
+    template <class>
+    [[nodiscard]] const float* numbers(std::size_t i) const {
+        return near.numbers.of(element(i));
+    }
     // Those of i .. that the bits name join others.
     void leave(std::size_t i, std::uint32_t bits, double unit, ActiveElements& others) const {
         for (; bits != 0; bits &= bits - 1) {
@@ -158,7 +179,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         M<Tag> valid = hn::FirstN(d, end - i);
         const Arrivals<Tag, shape> arrivals = source.at(i);
         const Seen<Tag, shape>& e = arrivals.e;
-        const M<Tag> kinked = hn::Lt(arrivals.inverse, zero);
+        M<Tag> kinked = hn::Lt(arrivals.inverse, zero);
         const V<Tag> strength = hn::Abs(e.strength);
         const V<Tag> value = hn::Mul(hn::Mul(strength, arrivals.whole), widened);
         const V<Tag> per_length =
@@ -168,9 +189,21 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const V<Tag> c_length = hn::Mul(length_of(d, arrivals.place), widened);
         const EntryErrors<Tag> eta =
             etas<shape>(d, on, e, c_length, arrivals.inverse, arrivals.inverse_width);
-        const EntryErrors<Tag> off =
+        EntryErrors<Tag> off =
             LanesOf<kind>::errors(d, on.u, eta, arrivals.least,
                                   greatest_root<shape>(d, on, arrivals, c_length), arrivals.peak);
+        M<Tag> is_exact = hn::Lt(eta.value, c(5e-4));
+        if constexpr (takes_any_place<shape>) {
+            // `away` leads from some place of the skeleton: k is no more than it should be, but for what
+            // rounding takes from |away|, with q r < 0.004 less than a hundredth of Blinn's k, and 3 r of others.
+            const V<Tag> all = hn::Add(hn::Add(c_length, e.parameter), c(on.H));
+            const V<Tag> r = hn::Mul(hn::MulAdd(c(64 * on.u), all, c(on.place_error)),
+                                     arrivals.inverse_width);
+            const V<Tag> most = hn::MulAdd(arrivals.peak, c(1.01), hn::Mul(c(3), r));
+            kinked = hn::Or(kinked, hn::Not(is_exact));
+            off.value = hn::IfThenElse(is_exact, off.value, most);
+            is_exact = hn::Or(is_exact, hn::Lt(r, c(1e-4)));
+        }
 
         M<Tag> is_strong = valid, enters = valid;
         if constexpr (is_coarse) {
@@ -211,11 +244,14 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
                 hn::Mul(parameter, c(unit_factor<SkeletonOf<shape>::parameter_power>(on.unit)));
             m_scale = c(unit_factor<SkeletonOf<shape>::m_power>(on.unit));
         }
-        M<Tag> fit = hn::Lt(eta.value, c(5e-4));
+        M<Tag> fit = is_exact;
         if constexpr (is_coarse) {
             // 1 / |m|^2 of a very short segment and such are beyond float.
             const V<Tag> largest = hn::Max(square, strength);
-            fit = hn::And(fit, hn::And(hn::Lt(eta.slope, c(1e-2)), hn::Lt(largest, c(1e12))));
+            const M<Tag> knows_slope = hn::Lt(eta.slope, c(greatest_turn<shape>));
+            fit = hn::And(fit, hn::And(takes_any_place<shape> ? hn::Or(knows_slope, kinked)
+                                                              : knows_slope,
+                                       hn::Lt(largest, c(1e12))));
             if constexpr (has_axis<shape>) fit = hn::And(fit, hn::Lt(parameter, c(1e12)));
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
@@ -261,6 +297,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
                 std::memcpy(to + 4, quads[1] + 4 * k, 4 * sizeof(Real));
                 if constexpr (has_axis<shape>) {
                     std::memcpy(to + 8, quads[2] + 4 * k, 4 * sizeof(Real));
+                }
+                if constexpr (numbered<shape>) {
+                    stage.entry[stage.size].set_numbers(source.template numbers<Real>(i + k));
                 }
                 ++stage.size;
             }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <tuple>
-#include <type_traits>
 
 #include "core/field/bounding_box.h"
 #include "core/math/parallel.h"
@@ -44,32 +46,61 @@ void make_room(Field& field, std::size_t count) {
     field.source.resize(count);
 }
 
-std::size_t parts_of(const Element& element) {
-    return std::visit([](const auto& skeleton) { return ivory::parts_of(skeleton); },
-                      element.skeleton);
-}
-
-SkeletonColumns columns_of(const Element& element, std::size_t part) {
-    return std::visit(
-        [&]<class S>(const S& skeleton) {
-            if constexpr (std::is_same_v<S, SegmentSkeleton>) {
-                if (!element.widths.empty()) {
-                    return TaperedSegment::columns(skeleton, element.widths[0], element.widths[1]);
+// The parts of an element: those with numbers once they are found, others as they are asked for.
+class Parts {
+  public:
+    explicit Parts(const Element& element) : element_(&element) {
+        std::visit(
+            [&]<class S>(const S& skeleton) {
+                if constexpr (S::has_numbers) {
+                    found_ = skeleton.split();
+                    count_ = found_.size();
+                } else {
+                    count_ = part_count(skeleton);
                 }
-            } else if constexpr (std::is_same_v<S, PolylineSkeleton>) {
-                if (!element.widths.empty()) {
-                    return TaperedSegment::columns(skeleton.segment(part), element.widths[part],
-                                                   element.widths[part + 1]);
-                }
-            }
-            return part_of(skeleton, part);
-        },
-        element.skeleton);
-}
+            },
+            element.skeleton);
+    }
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] SkeletonColumns operator[](std::size_t part) const {
+        return found_.empty() ? columns_of(*element_, part) : found_[part].columns;
+    }
+    [[nodiscard]] const std::vector<double>& numbers(std::size_t part) const {
+        return found_[part].numbers;
+    }
 
-// All that a part of an element says by itself, but for its colour.
-void put(Field& field, std::size_t i, const Element& element, std::size_t part) {
-    const auto [a, b, m, radius, length, parameter, width_a, width_b] = columns_of(element, part);
+    [[nodiscard]] static std::size_t count_of(const Element& element) {
+        return std::visit([](const auto& skeleton) { return part_count(skeleton); },
+                          element.skeleton);
+    }
+
+    // Of an element whose shape has no numbers.
+    static SkeletonColumns columns_of(const Element& element, std::size_t part) {
+        return std::visit(
+            [&]<class S>(const S& skeleton) -> SkeletonColumns {
+                if constexpr (S::may_taper) {
+                    if (!element.widths.empty()) {
+                        return TaperedSegment::columns(skeleton.segment(part), element.widths[part],
+                                                       element.widths[part + 1]);
+                    }
+                }
+                if constexpr (S::has_numbers)
+                    return {};
+                else
+                    return part_of(skeleton, part);
+            },
+            element.skeleton);
+    }
+
+  private:
+    const Element* element_;
+    std::vector<SkeletonPart> found_;
+    std::size_t count_ = 0;
+};
+
+// All that a part of an element says by itself, but for its colour and its numbers.
+void put(Field& field, std::size_t i, const Element& element, const SkeletonColumns& columns) {
+    const auto& [a, b, m, radius, length, parameter, width_a, width_b, numbers] = columns;
     const bool tapers = !element.widths.empty();
     const double width = tapers ? std::min(width_a, width_b) : element.width;
     field.shape[i] = field_shape_of(element);
@@ -95,6 +126,65 @@ void put(Field& field, std::size_t i, const Element& element, std::size_t part) 
     field.length[i] = length;
     field.inverse_width[i] = 1 / width;
     field.inverse_square[i] = 1 / (width * width);
+}
+
+// What parts have in numbers, in a row.
+class NumberRows {
+  public:
+    explicit NumberRows(std::size_t elements) : first_(elements, 0) {}
+    void add(std::size_t i, std::span<const double> numbers) {
+        first_[i] = static_cast<std::int32_t>(all_.size());
+        all_.insert(all_.end(), numbers.begin(), numbers.end());
+    }
+    // Any offset may be read from.
+    void move_to(Field& field) {
+        all_.resize(all_.size() + most_part_numbers);
+        field.numbers = std::move(all_);
+        field.numbers_first = std::move(first_);
+    }
+
+  private:
+    std::vector<double> all_;
+    std::vector<std::int32_t> first_;
+};
+
+// Those of some elements by others.
+void replace_numbers(Field& field, const std::map<std::size_t, std::vector<double>>& by) {
+    NumberRows rows(field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        if (!has_numbers(field.shape[i])) continue;
+        if (const auto found = by.find(i); found != by.end()) {
+            rows.add(i, found->second);
+        } else {
+            const std::size_t count = with_field_shape(field.shape[i], [&]<class S>() {
+                if constexpr (S::has_numbers)
+                    return S::size_of(field.columns(i));
+                else
+                    return std::size_t{0};
+            });
+            rows.add(i, field.numbers_of(i).first(count));
+        }
+    }
+    rows.move_to(field);
+}
+
+// The same for lanes of float.
+void put_numbers_in_units(Field& field) {
+    field.numbers_in_units.assign(field.numbers.size(), 0);
+    const double per_unit = 1 / field.unit;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        with_field_shape(field.shape[i], [&]<class S>() {
+            if constexpr (S::has_numbers) {
+                const SkeletonColumns columns = field.columns(i);
+                const std::size_t count = S::size_of(columns);
+                float* const to =
+                    field.numbers_in_units.data() + static_cast<std::size_t>(field.numbers_first[i]);
+                for (std::size_t k = 0; k < count; ++k) {
+                    to[k] = S::in_units(columns, k, columns.numbers[k], per_unit);
+                }
+            }
+        });
+    }
 }
 
 void put_color(Field& field, std::size_t i, const Color& color) {
@@ -142,6 +232,7 @@ void sum_up(Field& field) {
     field.compact = is_compact(field);
     field.unit = field.scale = 1;
     field.suits_float = false;
+    field.numbers_in_units.clear();
     if (!field.compact) return;
     constexpr double most_in_float = 0x1p9;
     int exponent = 0;
@@ -149,6 +240,7 @@ void sum_up(Field& field) {
     field.scale = std::ldexp(1.0, -exponent);
     std::frexp(field.greatest_width, &exponent);
     field.unit = std::ldexp(1.0, exponent - 1);
+    if (!field.numbers.empty()) put_numbers_in_units(field);
     field.suits_float = field.greatest_width < most_in_float * field.least_width &&
                         field.greatest_size < most_in_float * field.greatest_width;
 }
@@ -178,12 +270,18 @@ Field compile(const Scene& scene, int threads) {
     field.threshold = scene.threshold;
     std::array<std::vector<std::uint32_t>, field_groups> groups;
     std::size_t visible = 0;  // parts
+    std::map<std::uint32_t, Parts> with_numbers;
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         const Element& element = scene.elements[i];
         if (!element.visible) continue;
         const Shape shape = field_shape_of(element);
         groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
-        visible += parts_of(element);
+        if (has_numbers(shape)) {
+            visible += with_numbers.emplace(static_cast<std::uint32_t>(i), element)
+                           .first->second.count();
+        } else {
+            visible += Parts::count_of(element);
+        }
     }
     make_room(field, visible);
     const bool tapers = std::any_of(scene.elements.begin(), scene.elements.end(),
@@ -200,7 +298,10 @@ Field compile(const Scene& scene, int threads) {
         field.first.begin(group, count);
         if (visible >= least_clustered) sort_by_place(scene, threads, groups[group]);
         for (const std::uint32_t element : groups[group]) {
-            const std::size_t parts = parts_of(scene.elements[element]);
+            const auto found = with_numbers.find(element);
+            const std::size_t parts = found != with_numbers.end()
+                                          ? found->second.count()
+                                          : Parts::count_of(scene.elements[element]);
             for (std::uint32_t k = 0; k < parts; ++k) {
                 field.source[count] = element;
                 part[count++] = k;
@@ -211,10 +312,21 @@ Field compile(const Scene& scene, int threads) {
     for_ranges(visible, threads, least_range, [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
             const Element& element = scene.elements[field.source[i]];
-            put(field, i, element, part[i]);
+            const auto found = with_numbers.find(field.source[i]);
+            put(field, i, element,
+                found != with_numbers.end() ? found->second[part[i]]
+                                            : Parts::columns_of(element, part[i]));
             put_color(field, i, element.color);
         }
     });
+    if (!with_numbers.empty()) {
+        NumberRows rows(visible);
+        for (std::size_t i = 0; i < visible; ++i) {
+            const auto found = with_numbers.find(field.source[i]);
+            if (found != with_numbers.end()) rows.add(i, found->second.numbers(part[i]));
+        }
+        rows.move_to(field);
+    }
     look_for_one_color(field);
     sum_up(field);
     field.clusters = clusters_of(field, threads);
@@ -234,8 +346,8 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
         if (old.kernel != element.kernel || field_shape_of(old) != field_shape_of(element)) {
             return Refit::impossible;
         }
-        if (parts_of(old) != parts_of(element)) return Refit::impossible;
         if (same_numbers(old, element) && old.color == element.color) continue;
+        if (Parts(old).count() != Parts(element).count()) return Refit::impossible;
         changed.push_back(static_cast<std::uint32_t>(i));
         if (field.clusters.empty()) continue;
         if (changed.size() > most_in_clusters) return Refit::impossible;
@@ -247,14 +359,19 @@ Refit refit(Field& field, const Scene& before, const Scene& after) {
     field.threshold = after.threshold;
     std::vector<std::uint32_t> indices;  // in the field
     std::size_t part = 0;
+    std::optional<Parts> parts;  // of the element that these are of
+    std::map<std::size_t, std::vector<double>> numbers;
     for (std::size_t i = 0; i < field.size() && !changed.empty(); ++i) {
         const std::uint32_t source = field.source[i];
         if (!std::binary_search(changed.begin(), changed.end(), source)) continue;
         part = i > 0 && field.source[i - 1] == source ? part + 1 : 0;
-        put(field, i, after.elements[source], part);
+        if (part == 0) parts.emplace(after.elements[source]);
+        put(field, i, after.elements[source], (*parts)[part]);
+        if (has_numbers(field.shape[i])) numbers[i] = parts->numbers(part);
         put_color(field, i, after.elements[source].color);
         indices.push_back(static_cast<std::uint32_t>(i));
     }
+    if (!numbers.empty()) replace_numbers(field, numbers);
     look_for_one_color(field);
     const auto as_floats = [&] {
         return std::tuple(field.compact, field.unit, field.scale, field.suits_float);

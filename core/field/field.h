@@ -47,6 +47,11 @@ struct Field {
     // Of tapers: SkeletonColumns::width_a and so on, and the least width of the whole element; none
     // where there are no tapers.
     std::vector<double> width_a, width_b, width_of_all;
+    // SkeletonColumns::numbers of all elements and, of a compact field, the same with lengths in units;
+    // where each element's begin. None where no shape has any.
+    std::vector<double> numbers;
+    std::vector<float> numbers_in_units;
+    std::vector<std::int32_t> numbers_first;
     std::vector<Color> color;           // linear RGB
     std::vector<std::uint32_t> source;  // index in Scene::elements
     GroupStarts first{};
@@ -81,7 +86,17 @@ struct Field {
             c.width_a = width_a[i];
             c.width_b = width_b[i];
         }
+        if (has_numbers(shape[i])) c.numbers = numbers_of(i);
         return c;
+    }
+    [[nodiscard]] std::span<const double> numbers_of(std::size_t i) const {
+        return std::span(numbers).subspan(static_cast<std::size_t>(numbers_first[i]));
+    }
+    [[nodiscard]] PartNumbers<double> all_numbers() const {
+        return {numbers.data(), numbers_first.data(), static_cast<std::uint32_t>(size())};
+    }
+    [[nodiscard]] PartNumbers<float> all_numbers_in_units() const {
+        return {numbers_in_units.data(), numbers_first.data(), static_cast<std::uint32_t>(size())};
     }
     // Of a taper `width` is the least.
     [[nodiscard]] double greatest_width_of(std::size_t i) const {

@@ -1,5 +1,8 @@
 #include "core/field/inclusion.h"
 
+#include <algorithm>
+#include <optional>
+#include <span>
 #include <variant>
 
 #include "core/interval/quick.h"
@@ -143,6 +146,38 @@ Interval<double> element_at(const ElementAlongRay& e, double t) {
     return std::visit([&](const auto& form) { return form_at(form, e, t); }, e.form);
 }
 
+// What is known of k without looking closer: of most forms nothing.
+Interval<double> rough_over(const ElementAlongRay& e, double t0, double t1) {
+    const auto* const arc = std::get_if<CurveAlongRay>(&e.form);
+    return arc != nullptr ? kernel_over(e.kernel, arc->rough_square(t0, t1))
+                          : Interval<double>(0.0, 1.0);
+}
+
+// Of one element's parts, of which there is one at least, those near [t0, t1] that may be the nearest.
+class NearParts {
+  public:
+    // Of all from the one at `first` on that join the next.
+    NearParts(std::span<const ElementAlongRay> elements, std::size_t first, double t0, double t1)
+        : t0_(t0), t1_(t1) {
+        if (!std::holds_alternative<CurveAlongRay>(elements[first].form)) return;
+        for (std::size_t i = first;; ++i) {
+            const ElementAlongRay& e = elements[i];
+            if (!is_far(e)) greatest_ = std::max(greatest_, rough_over(e, t0, t1).lo);
+            if (!e.joins) break;
+        }
+    }
+    [[nodiscard]] bool is_far(const ElementAlongRay& e) const {
+        return e.active.hi < t0_ || e.active.lo > t1_;
+    }
+    [[nodiscard]] bool has_no_say(const ElementAlongRay& e) const {
+        return greatest_ > 0 && rough_over(e, t0_, t1_).hi < greatest_;
+    }
+
+  private:
+    double t0_, t1_;
+    double greatest_ = 0;  // some part's k is at least that, all along
+};
+
 // A sum of intervals in plain doubles. n terms, each b k with one rounding, added one by one, err
 // by at most (n + 2) u times the sum of their magnitudes, which `finish` subtracts and adds. A term
 // that is unbounded on one side leaves the other side's bound alone.
@@ -227,17 +262,21 @@ Enclosure FieldAlongRay::over(double t0, double t1) const {
     rest.add(1, rest_);
     rest.add(-1, Interval<double>(threshold_));
     Terms parts;  // those of an element so far that are near
-    bool has_parts = false;
-    for (const ElementAlongRay& e : elements_) {
-        const bool is_far = e.active.hi < t0 || e.active.lo > t1;
+    bool has_parts = false, begins = true;
+    std::optional<NearParts> near;
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+        const ElementAlongRay& e = elements_[i];
+        if (begins) near.emplace(elements_, i, t0, t1);
+        begins = !e.joins;
+        const bool is_far = near->is_far(e);
         if (is_far) rest.add(1, e.beyond);
         if (is_far && !has_parts) continue;
-        if (!is_far) {
+        if (!is_far && !near->has_no_say(e)) {
             const Terms part = element_over(e, t0, t1);
             parts = has_parts ? greater(parts, part) : part;
             has_parts = true;
         }
-        if (e.joins) continue;
+        if (e.joins || !has_parts) continue;
         const Terms& k = parts;
         has_parts = false;
         left.add(e.strength, k.left);
@@ -262,10 +301,15 @@ Interval<double> FieldAlongRay::at(double t) const {
     rest.add(1, rest_);
     rest.add(-1, Interval<double>(threshold_));
     Interval<double> parts = Interval<double>::empty_set();  // the greatest of an element so far
-    for (const ElementAlongRay& e : elements_) {
-        if (e.active.hi < t || e.active.lo > t) {
+    bool begins = true;
+    std::optional<NearParts> near;
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+        const ElementAlongRay& e = elements_[i];
+        if (begins) near.emplace(elements_, i, t, t);
+        begins = !e.joins;
+        if (near->is_far(e)) {
             rest.add(1, e.beyond);
-        } else {
+        } else if (!near->has_no_say(e)) {
             const Interval<double> k = element_at(e, t);
             parts = is_empty(parts)
                         ? k

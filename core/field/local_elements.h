@@ -20,6 +20,7 @@ struct LocalElements {
     std::vector<float> least, most, peak, whole, inverse;
     // No place is off by more than 2^-23 of this beside its own rounding.
     float magnitude = 0;
+    PartNumbers<float> numbers;  // of the field's elements
 
     static constexpr std::size_t room = 32;  // vectors are read and written whole
 

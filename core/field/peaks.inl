@@ -259,14 +259,15 @@ PeakSums bound_clusters(const Field& field, const Stretch& stretch, double scale
 
 // The valid ones from `first` on; their places, less `place`, are those of `candidates`.
 template <Shape shape, KernelKind kind>
-HWY_INLINE void bound_local_lanes(const LocalElements& candidates, std::size_t first, M<F> valid,
+HWY_INLINE void bound_local_lanes(const LocalElements& candidates,
+                                  const PartNumbers<float>& numbers, std::size_t first, M<F> valid,
                                   const Reach<float>& reach, const Vec3<float>& place, float cut,
                                   LocalElements* kept, std::size_t& count, PeakLanes<F>& peaks) {
     const F d;
     const hn::RebindToSigned<F> di;
     const V<F> widened = hn::Set(d, Margins<float>::more),
                reduced = hn::Set(d, Margins<float>::less);
-    const auto e = seen_local<shape>(candidates, reach, first);
+    const auto e = seen_local<shape>(candidates, numbers, reach, first);
     const DistanceRange<F> range =
         LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
     const V<F> least = hn::Mul(hn::Mul(square_of(range.near), e.inverse_square), reduced);
@@ -337,8 +338,8 @@ void bound_local_group(const LocalElements& candidates, const LocalStretch& stre
     const std::size_t kept_before = count;
     PeakLanes<F> peaks;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        bound_local_lanes<shape, kind>(candidates, i, hn::FirstN(d, end - i), reach, {}, cut, &kept,
-                                       count, peaks);
+        bound_local_lanes<shape, kind>(candidates, candidates.numbers, i, hn::FirstN(d, end - i),
+                                       reach, {}, cut, &kept, count, peaks);
     }
     peaks.add_to(sums);
     if constexpr (joined<shape>) join_parts(kept, kept_before, double{cut}, count, sums);
@@ -348,6 +349,7 @@ PeakSums bound_local(const LocalElements& candidates, const LocalStretch& stretc
                      LocalElements& kept) {
     kept.make_room(candidates.size());
     kept.magnitude = candidates.magnitude;
+    kept.numbers = candidates.numbers;
     PeakSums sums;
     std::size_t count = 0;
     GroupStarts& starts = kept.first;
@@ -392,8 +394,9 @@ void bound_member_group(const Field& field, const Stretch& bundle, double middle
         const std::size_t before = count;
         const std::size_t last = clusters.first[cluster + 1];
         for (std::size_t e = clusters.first[cluster]; e < last; e += hn::Lanes(d)) {
-            bound_local_lanes<shape, kind>(clusters.members, e, hn::FirstN(d, last - e),
-                                           from_center, center, cut, kept, count, peaks);
+            bound_local_lanes<shape, kind>(clusters.members, field.all_numbers_in_units(), e,
+                                           hn::FirstN(d, last - e), from_center, center, cut, kept,
+                                           count, peaks);
         }
         if (count > before) {
             kept->magnitude = std::fmax(
@@ -413,6 +416,7 @@ PeakSums bound_members(const Field& field, const Stretch& bundle, double middle,
     if (kept != nullptr) {
         kept->make_room(clusters.size() * cluster_size);
         kept->magnitude = 0;
+        kept->numbers = field.all_numbers_in_units();
     }
     PeakSums sums;
     std::size_t count = 0;

@@ -116,6 +116,7 @@ void enter_local(const Field& field, const Stretch& bundle, double middle,
                  const ActiveElements& active, LocalElements& near) {
     near.make_room(active.size());
     near.first = active.first;
+    near.numbers = field.all_numbers_in_units();
     for_groups_of(active.first,
                   [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first, std::size_t end)
                       HWY_ATTR { near_group<shape>(field, active, first, end, near); });

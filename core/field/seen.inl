@@ -25,6 +25,8 @@ inline constexpr bool has_length = SkeletonOf<shape>::m_power == 1;
 
 template <Shape shape>
 inline constexpr bool tapers = SkeletonOf<shape>::is_taper;
+template <Shape shape>
+inline constexpr bool numbered = SkeletonOf<shape>::has_numbers;
 
 HWY_INLINE Reach<double> reach_of(const Stretch& s) {
     return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
@@ -78,13 +80,18 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
         const V<D> per_width = column(field.inverse_width), width_a = column(field.width_a);
         e.taper_rate = hn::Mul(hn::Sub(column(field.width_b), width_a), per_width);
     }
+    if constexpr (numbered<shape>) {
+        HWY_ALIGN hn::TFromD<I> element[hn::MaxLanes(D())];
+        hn::Store(index, I(), element);
+        e.see(field.all_numbers(), element);
+    }
     e.finish();
     return e;
 }
 
 template <Shape shape>
-HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<float>& reach,
-                                     std::size_t i) {
+HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const PartNumbers<float>& numbers,
+                                     const Reach<float>& reach, std::size_t i) {
     const F d;
     const auto column = [&](const std::vector<float>& values)
                             HWY_ATTR { return hn::LoadU(d, &values[i]); };
@@ -105,6 +112,7 @@ HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const Reach<floa
     if constexpr (tapers<shape>) {
         e.taper_rate = column(near.taper_rate);
     }
+    if constexpr (numbered<shape>) e.see(numbers, &near.element[i]);
     e.finish();
     return e;
 }

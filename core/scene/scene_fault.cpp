@@ -85,6 +85,12 @@ Fault find_fault(const Member<Skeleton, std::vector<Vec3d>>& member,
                                          std::to_string(places.size()) + "; it must have " +
                                          std::to_string(member.least) + " or more"};
     }
+    if (places.size() > member.most) {
+        return SceneFault{"/" + key, "the list of " + key + " has " +
+                                         std::to_string(places.size()) + "; it must have " +
+                                         std::to_string(member.least) + " to " +
+                                         std::to_string(member.most)};
+    }
     for (std::size_t i = 0; i < places.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (std::isfinite(places[i][k])) continue;
@@ -103,6 +109,14 @@ Fault find_fault(const S& skeleton) {
     for_members<S>([&](const auto& member) {
         if (!fault) fault = find_fault(member, skeleton.*member.value);
     });
+    // What is right by itself may not go together.
+    if constexpr (requires { skeleton.fault(); }) {
+        const auto& first = std::get<0>(S::members());
+        if (const auto wrong = fault ? std::nullopt : skeleton.fault()) {
+            fault = SceneFault{"/" + std::string(first.key),
+                               "the " + std::string(first.key) + " " + *wrong};
+        }
+    }
     return fault;
 }
 

@@ -18,6 +18,8 @@
 #include "core/math/offset.h"
 #include "core/math/vec3.h"
 #include "core/shape/circle_along_ray.h"
+#include "core/shape/convex_along_ray.h"
+#include "core/shape/curve_along_ray.h"
 #include "core/shape/taper_along_ray.h"
 
 namespace ivory {
@@ -43,7 +45,9 @@ struct UnboundedAlongRay {};
 
 // One skeleton seen from one ray, for t in a span.
 struct SkeletonAlongRay {
-    std::variant<UnboundedAlongRay, SquaresAlongRay, CircleAlongRay, TaperAlongRay> form;
+    std::variant<UnboundedAlongRay, SquaresAlongRay, CircleAlongRay, TaperAlongRay, ConvexAlongRay,
+                 CurveAlongRay>
+        form;
     // s >= cut certainly holds on the span outside of this; empty: nowhere on the span is s <= cut.
     Interval<double> active = Interval<double>::entire();
 };

@@ -1,6 +1,8 @@
 // One element as the inner loops of packets want it.
 #pragma once
 
+#include <cstring>
+
 namespace ivory {
 
 // c: the skeleton's first place, relative to the window's. `away` is what leads from the skeleton's
@@ -16,6 +18,14 @@ struct BundleEntry {
     Real taper_rate;             // of tapers (core/shape/taper.h)
     Real joins;                  // not 0: the next entry is another part of the same element
     Real mx, my, mz, parameter;  // not of points
+
+    // Of what has numbers: where they are, in the place of m.
+    [[nodiscard]] const Real* numbers() const {
+        const Real* at = nullptr;
+        std::memcpy(&at, &mx, sizeof at);
+        return at;
+    }
+    void set_numbers(const Real* at) { std::memcpy(&mx, &at, sizeof at); }
 };
 
 }  // namespace ivory

@@ -36,7 +36,8 @@ struct CircleSkeleton {
     // On the axis the direction to the nearest point jumps.
     static constexpr bool has_kinks = true;
     // m = n; parameter = r.
-    static constexpr bool may_taper = false, is_taper = false, is_joined = false;
+    static constexpr bool may_taper = false, is_taper = false, is_joined = false,
+                          has_numbers = false;
     static constexpr bool has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 

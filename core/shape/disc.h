@@ -37,7 +37,8 @@ struct DiscSkeleton {
 
     static constexpr bool has_kinks = false;
     // m = n; parameter = r.
-    static constexpr bool may_taper = false, is_taper = false, is_joined = false;
+    static constexpr bool may_taper = false, is_taper = false, is_joined = false,
+                          has_numbers = false;
     static constexpr bool has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 

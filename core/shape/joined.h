@@ -16,7 +16,7 @@ template <class Part>
 struct JoinedParts {
     friend bool operator==(const JoinedParts&, const JoinedParts&) = default;
 
-    static constexpr bool is_joined = true;
+    static constexpr bool is_joined = true, has_numbers = Part::has_numbers;
     static constexpr bool has_kinks = Part::has_kinks, is_taper = Part::is_taper;
     static constexpr bool has_axis = Part::has_axis;
     static constexpr int m_power = Part::m_power, parameter_power = Part::parameter_power;

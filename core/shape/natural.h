@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "core/interval/interval.h"
 #include "core/interval/quick.h"
 #include "core/math/vec3.h"
+#include "core/shape/curve_along_ray.h"
 
 namespace ivory::natural {
 
@@ -34,6 +36,11 @@ struct RaySkeleton {
     Vec3<Span> axis;         // M of a segment
     Span radius;             // of a circle, of a disc
     Span taper_rate;         // of a taper: w_b - w_a in least widths
+    // Of what has numbers: those, what brings them into widths, and the skeleton's size, not in widths.
+    std::span<const double> numbers;
+    Span per_width;
+    double size = 0;
+    CurveAlongRay curve;  // of an arc; its ray and width are known of any skeleton
 };
 
 template <class Number>
@@ -49,11 +56,22 @@ struct SquareAndSlope {
     Span square, slope;
 };
 [[nodiscard]] SquareAndSlope taper_over(const RaySkeleton& e, const Span& t);
+// s of a convex part of a polygon (core/shape/convex_part.h): the height above the plane, and beside it the
+// least of its edges' squares, or 0 where it may be above the inside.
+[[nodiscard]] SquareAndSlope convex_part_over(const RaySkeleton& e, const Span& t);
+// s of an arc of a curve, which has no formula: its feet at both ends, and how far s and s' can be from
+// there (core/shape/curve_along_ray.h).
+[[nodiscard]] SquareAndSlope curve_arc_over(const RaySkeleton& e, const Span& t);
 
-// As each number type has it.
-template <class Number>
-[[nodiscard]] Number taper_square(const RaySkeleton& e, const Number& t) {
-    const SquareAndSlope s = taper_over(e, range(t));
+// As each number type has it: from the values and slopes over t or, where it is a line and what is left,
+// from the value in the middle and the slopes, if that says more.
+template <class Number, class Over>
+[[nodiscard]] Number as_number(const Number& t, const Over& over) {
+    const SquareAndSlope s = over(range(t));
+    if constexpr (requires { along_slope(t, s.square, s.slope); }) {
+        const Number line = along_slope(t, over(Span(t.mid)).square, s.slope);
+        if (width(range(line)) <= width(s.square)) return line;
+    }
     return enclosed(t, s.square, s.slope);
 }
 

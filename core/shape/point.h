@@ -25,7 +25,8 @@ struct PointSkeleton {
     // A convex skeleton without a medial axis: d^2 is smooth along each piece of a ray.
     static constexpr bool has_kinks = false;
     // m and parameter are not used.
-    static constexpr bool may_taper = false, is_taper = false, is_joined = false;
+    static constexpr bool may_taper = false, is_taper = false, is_joined = false,
+                          has_numbers = false;
     static constexpr bool has_axis = false;
     static constexpr int m_power = 0, parameter_power = 0;
 

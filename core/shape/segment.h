@@ -30,10 +30,13 @@ struct SegmentSkeleton {
     static constexpr bool has_kinks = false;
     // m = b - a; parameter = 1 / |m|^2, 0 where that is shorter than 1e-40 and stands for its end a.
     // With a list of widths: core/shape/taper.h.
-    static constexpr bool may_taper = true, is_taper = false, is_joined = false;
+    static constexpr bool may_taper = true, is_taper = false, is_joined = false,
+                          has_numbers = false;
     static constexpr std::size_t width_places() { return 2; }
     static constexpr bool has_axis = true;
     static constexpr int m_power = 1, parameter_power = -2;
+
+    [[nodiscard]] const SegmentSkeleton& segment(std::size_t) const { return *this; }
 
     [[nodiscard]] Vec3d middle() const { return 0.5 * a + 0.5 * b; }
     [[nodiscard]] SkeletonColumns columns() const {

@@ -74,9 +74,40 @@ struct Reach {
     Real magnitude;  // of all numbers here but t_offset: what rounding is relative to
 };
 
+// The numbers of some elements, side by side (SkeletonColumns::numbers).
+template <class Tag, bool has_any>
+struct SeenNumbers {};
+template <class Tag>
+struct SeenNumbers<Tag, true> {
+    using Real = hn::TFromD<Tag>;
+    using Index = hn::RebindToSigned<Tag>;
+    const Real* all;
+    hn::Vec<Index> first;
+
+    // Beyond the last element stands whatever there was.
+    template <class Element>
+    HWY_INLINE void see(const PartNumbers<Real>& numbers, const Element* element) {
+        constexpr std::size_t lanes = hn::MaxLanes(Tag());
+        HWY_ALIGN hn::TFromD<Index> at[lanes];
+        for (std::size_t k = 0; k < lanes; ++k) {
+            const auto i = static_cast<std::uint64_t>(element[k]);
+            at[k] = i < numbers.elements ? numbers.first[i] : 0;
+        }
+        all = numbers.all;
+        first = hn::Load(Index(), at);
+    }
+    // The k-th; and the one whose place each lane says.
+    [[nodiscard]] HWY_INLINE V<Tag> number(std::size_t k) const {
+        return hn::GatherIndex(Tag(), all + k, first);
+    }
+    [[nodiscard]] HWY_INLINE V<Tag> number_at(V<Tag> place) const {
+        return hn::GatherIndex(Tag(), all, hn::Add(first, hn::ConvertTo(Index(), place)));
+    }
+};
+
 // Some elements of a group, seen from where their places are relative to.
 template <class Tag, Shape shape>
-struct Seen {
+struct Seen : SeenNumbers<Tag, SkeletonOf<shape>::has_numbers> {
     using Real = hn::TFromD<Tag>;
     Vec3v<Tag> v;           // to the skeleton's first place
     Vec3v<Tag> m;           // as the shape's file says; 0 where it has no axis

@@ -7,12 +7,15 @@
 #include "core/shape/segment.h"
 #include "core/shape/taper.h"
 
-// Of the parts of those:
+// Of the parts of those, or of others:
+#include "core/shape/curve.h"
+#include "core/shape/polygon.h"
 #include "core/shape/polyline.h"
 
 #ifndef IVORY_CORE_SHAPE_SHAPES_H
 #define IVORY_CORE_SHAPE_SHAPES_H
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -20,22 +23,35 @@
 #include <string_view>
 #include <tuple>
 #include <variant>
+#include <vector>
 
 #include "core/math/type_list.h"
 
 namespace ivory {
 
-enum class Shape : std::uint8_t { point, segment, circle, disc, polyline, taper, tapered_polyline };
+enum class Shape : std::uint8_t {
+    point,
+    segment,
+    circle,
+    disc,
+    polygon,
+    curve,
+    polyline,
+    taper,
+    tapered_polyline
+};
 using Shapes =
-    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolylineSkeleton>;
+    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolygonSkeleton, CurveSkeleton, PolylineSkeleton>;
 // What fields are made of: those, and what becomes of a list of widths.
-using FieldShapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton,
+using FieldShapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolygonSkeleton, CurveSkeleton,
                              PolylineSkeleton, TaperedSegment, TaperedPolyline>;
 
 static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
 static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
 static_assert(index_in<CircleSkeleton, Shapes> == static_cast<std::size_t>(Shape::circle));
 static_assert(index_in<DiscSkeleton, Shapes> == static_cast<std::size_t>(Shape::disc));
+static_assert(index_in<PolygonSkeleton, Shapes> == static_cast<std::size_t>(Shape::polygon));
+static_assert(index_in<CurveSkeleton, Shapes> == static_cast<std::size_t>(Shape::curve));
 static_assert(index_in<PolylineSkeleton, Shapes> == static_cast<std::size_t>(Shape::polyline));
 static_assert(index_in<TaperedSegment, FieldShapes> == static_cast<std::size_t>(Shape::taper));
 static_assert(index_in<TaperedPolyline, FieldShapes> ==
@@ -56,6 +72,7 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
     { S::has_axis } -> std::convertible_to<bool>;
     { S::is_taper } -> std::convertible_to<bool>;
     { S::is_joined } -> std::convertible_to<bool>;  // several parts: core/shape/joined.h
+    { S::has_numbers } -> std::convertible_to<bool>;  // beside the columns: SkeletonColumns::numbers
     { S::m_power } -> std::convertible_to<int>;
     { S::parameter_power } -> std::convertible_to<int>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
@@ -67,10 +84,13 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
     S::see(columns, span, v, v, v, on_ray);
 };
 
-// The parts that a skeleton is to a field: one, but of joined ones.
+// The parts that a skeleton is to a field: one, but of joined ones. Where these have numbers, they are
+// found all at once.
 template <class S>
-[[nodiscard]] std::size_t parts_of(const S& skeleton) {
-    if constexpr (S::is_joined)
+[[nodiscard]] std::size_t part_count(const S& skeleton) {
+    if constexpr (S::has_numbers)
+        return skeleton.split().size();
+    else if constexpr (S::is_joined)
         return skeleton.parts();
     else
         return 1;
@@ -82,6 +102,18 @@ template <class S>
     else
         return skeleton.columns();
 }
+template <class S>
+[[nodiscard]] std::vector<SkeletonPart> parts_of(const S& skeleton) {
+    std::vector<SkeletonPart> parts;
+    if constexpr (S::has_numbers) {
+        parts = skeleton.split();
+    } else {
+        for (std::size_t part = 0; part < part_count(skeleton); ++part) {
+            parts.push_back({part_of(skeleton, part), {}});
+        }
+    }
+    return parts;
+}
 
 template <class S>
 concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires(const S& s) {
@@ -91,22 +123,37 @@ concept SkeletonShape = std::equality_comparable<S> && FieldShape<S> && requires
     std::tuple_size<decltype(S::members())>::value;
     { S::may_taper } -> std::convertible_to<bool>;  // its width may be a list
     { s.middle() } -> std::same_as<Vec3d>;
-    { part_of(s, 0) } -> std::same_as<SkeletonColumns>;
+    { parts_of(s) } -> std::same_as<std::vector<SkeletonPart>>;
 };
+
+// So many numbers are read of a part at the most.
+inline constexpr std::size_t most_part_numbers =
+    std::max(convex_part::most_numbers, curve_arc::most_numbers);
 
 inline constexpr std::size_t shape_count = Shapes::size;
 inline constexpr std::size_t field_shape_count = FieldShapes::size;
 
+namespace shapes_detail {
+
+struct Traits {
+    bool is_taper, is_joined, has_numbers;
+};
+inline constexpr auto traits = []<class... S>(TypeList<S...>) {
+    return std::array<Traits, sizeof...(S)>{
+        Traits{S::is_taper, S::is_joined, S::has_numbers}...};
+}(FieldShapes{});
+
+}  // namespace shapes_detail
+
 [[nodiscard]] constexpr bool is_taper(Shape shape) {
-    return shape == Shape::taper || shape == Shape::tapered_polyline;
+    return shapes_detail::traits[static_cast<std::size_t>(shape)].is_taper;
 }
 [[nodiscard]] constexpr bool is_joined(Shape shape) {
-    return shape == Shape::polyline || shape == Shape::tapered_polyline;
+    return shapes_detail::traits[static_cast<std::size_t>(shape)].is_joined;
 }
-static_assert([]<class... S>(TypeList<S...>) {
-    return ((is_taper(static_cast<Shape>(index_in<S, FieldShapes>)) == S::is_taper) && ...) &&
-           ((is_joined(static_cast<Shape>(index_in<S, FieldShapes>)) == S::is_joined) && ...);
-}(FieldShapes{}));
+[[nodiscard]] constexpr bool has_numbers(Shape shape) {
+    return shapes_detail::traits[static_cast<std::size_t>(shape)].has_numbers;
+}
 
 template <class S>
 inline constexpr Shape shape_of = static_cast<Shape>(index_in<S, FieldShapes>);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -24,7 +26,8 @@ struct Member {
     std::string_view key, label;
     MemberKind kind;
     Value Skeleton::*value;
-    std::size_t least = 1;  // of a list: so many at the least
+    // Of a list: so many at the least and at the most.
+    std::size_t least = 1, most = std::size_t(-1);
 };
 
 template <class Skeleton>
@@ -32,10 +35,10 @@ constexpr Member<Skeleton, Vec3d> place(std::string_view key, std::string_view l
                                         Vec3d Skeleton::*value) {
     return {key, label, MemberKind::place, value};
 }
-template <std::size_t least, class Skeleton>
+template <std::size_t least, std::size_t most = std::size_t(-1), class Skeleton>
 constexpr Member<Skeleton, std::vector<Vec3d>> places(std::string_view key, std::string_view label,
                                                       std::vector<Vec3d> Skeleton::*value) {
-    return {key, label, MemberKind::places, value, least};
+    return {key, label, MemberKind::places, value, least, most};
 }
 template <class Skeleton>
 constexpr Member<Skeleton, Vec3d> direction(std::string_view key, std::string_view label,
@@ -56,6 +59,32 @@ struct SkeletonColumns {
     double length = 0;                // of m, where it has one that matters
     double parameter = 0;             // what else the quick bounds need
     double width_a = 0, width_b = 0;  // of tapers, as written: at a and at b
+    std::span<const double> numbers = {};  // where the shape has_numbers: from the part's first one on
+};
+
+// One part of a skeleton with numbers of its own, which its columns do not point to.
+struct SkeletonPart {
+    SkeletonColumns columns;
+    std::vector<double> numbers;
+
+    // For as long as the part lives.
+    [[nodiscard]] SkeletonColumns seen() const {
+        SkeletonColumns c = columns;
+        if (!numbers.empty()) c.numbers = numbers;
+        return c;
+    }
+};
+
+// The numbers of all elements of a field, side by side: where those of one begin. Any offset may be
+// read from for as long as a part can be.
+template <class Real>
+struct PartNumbers {
+    const Real* all = nullptr;
+    const std::int32_t* first = nullptr;  // of each element
+    std::uint32_t elements = 0;
+
+    [[nodiscard]] const Real* of(std::size_t element) const { return all + first[element]; }
+    friend bool operator==(const PartNumbers&, const PartNumbers&) = default;
 };
 
 // What a number of that power of lengths has to be multiplied by to be in units.

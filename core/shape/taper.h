@@ -33,7 +33,7 @@ namespace ivory {
 // Not a skeleton of its own: what a field makes of a segment with two widths.
 struct TaperedSegment {
     static constexpr bool has_kinks = true;  // beyond kappa q = 1
-    static constexpr bool is_taper = true, is_joined = false;
+    static constexpr bool is_taper = true, is_joined = false, has_numbers = false;
     static constexpr bool has_axis = true;  // m = b - a
     static constexpr int m_power = 1, parameter_power = 0;
 
@@ -95,7 +95,8 @@ struct TaperedSegment {
     }
     template <class Number>
     static Number square(const natural::RaySkeleton& e, const Number& t) {
-        return natural::taper_square(e, t);
+        return natural::as_number(
+            t, [&](const natural::Span& x) { return natural::taper_over(e, x); });
     }
     template <class Number>
     static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {

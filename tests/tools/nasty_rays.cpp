@@ -120,7 +120,7 @@ class Maker {
         const Vec3d v = times(1 / length(n), cross);
         for (const Vec3d& side : {u, times(-1, u), v, times(-1, v)}) {
             points.push_back(std::visit(
-                [&]<class S>(const S& s) { return S::farthest(part_of(s, 0), {}, side); },
+                [&]<class S>(const S& s) { return S::farthest(parts_of(s)[0].seen(), {}, side); },
                 skeleton));
         }
         return points;

@@ -15,8 +15,8 @@ inline Vec3d nearest_place(const Skeleton& skeleton, const Vec3d& p) {
         [&]<class S>(const S& s) {
             double least = infinity<double>;
             Vec3d place;
-            for (std::size_t part = 0; part < parts_of(s); ++part) {
-                const SkeletonColumns columns = part_of(s, part);
+            for (const SkeletonPart& part : parts_of(s)) {
+                const SkeletonColumns columns = part.seen();
                 const Nearest at = S::nearest(columns, p - columns.a, 1);
                 if (at.s < least) place = p - at.away;
                 least = std::min(least, at.s);
@@ -29,7 +29,10 @@ inline Vec3d nearest_place(const Skeleton& skeleton, const Vec3d& p) {
 // Any place of the skeleton, its ends often.
 inline Vec3d on_skeleton(const Skeleton& skeleton, Random& random) {
     const Ball ball = std::visit(
-        [&]<class S>(const S& s) { return S::ball(part_of(s, random.below(parts_of(s)))); },
+        [&]<class S>(const S& s) {
+            const std::vector<SkeletonPart> parts = parts_of(s);
+            return S::ball(parts[random.below(parts.size())].seen());
+        },
         skeleton);
     return nearest_place(skeleton, ball.center + random.in_cube(2 * ball.radius));
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,9 +16,29 @@
 
 namespace ivory::tools {
 
-// What part i of the field would be as an element of its own: a segment of a polyline.
+// What part i of the field would be as an element of its own: a segment of a polyline, a convex part of a
+// polygon, an arc of a curve; to nearest.
 inline Element element_of_part(const Scene& scene, const Field& field, std::size_t i) {
     Element element = scene.elements[field.source[i]];
+    if (has_numbers(field.shape[i])) {
+        const SkeletonColumns c = field.columns(i);
+        if (field.shape[i] == Shape::polygon) {
+            std::vector<Vec3d> vertices;
+            PolygonSkeleton::for_vertices(
+                c, [&](const Vec3d& vertex) { vertices.push_back(vertex); });
+            element.skeleton = PolygonSkeleton(std::move(vertices));
+        } else {
+            const auto k = [&](std::size_t at) {
+                return Vec3d{c.numbers[at], c.numbers[at + 1], c.numbers[at + 2]};
+            };
+            const Vec3d k0 = k(curve_arc::at_k0), k1 = k(curve_arc::at_k1),
+                        k2 = k(curve_arc::at_k2), k3 = k(curve_arc::at_k3);
+            const Vec3d odd = (1.0 / 3) * k1 - k3;
+            element.skeleton = CurveSkeleton({c.a + (k0 - k1 + k2 - k3), c.a + (k0 - k2 - odd),
+                                              c.a + (k0 - k2 + odd), c.a + (k0 + k1 + k2 + k3)});
+        }
+        return element;
+    }
     const auto* chain = std::get_if<PolylineSkeleton>(&element.skeleton);
     if (chain == nullptr) return element;
     std::size_t part = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "tests/reference/reference.h"
 
@@ -16,11 +18,53 @@ Vec3d rounded_off(const Vec3d& v) { return {rounded_off(v.x), rounded_off(v.y), 
 
 Vec3d sum(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
+// A star around a middle near `first`, often not convex, in a plane of a few binary digits: its vertices are
+// in it exactly.
+PolygonSkeleton random_polygon(const Vec3d& first, Random& random) {
+    const auto coarse = [&](double x) { return std::round(x * 0x1p8) * 0x1p-8; };
+    Vec3d e, f;
+    do {
+        for (std::size_t k = 0; k < 3; ++k) {
+            e[k] = coarse(random.uniform(-1, 1));
+            f[k] = coarse(random.uniform(-1, 1));
+        }
+    } while (dot(cross(e, f), cross(e, f)) < 0.05);
+    const std::size_t count = 3 + random.below(6);
+    std::vector<Vec3d> vertices;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double angle =
+            2 * 3.14159265 * (static_cast<double>(i) + random.uniform(0.1, 0.9)) /
+            static_cast<double>(count);
+        const double radius = random.uniform(0.3, 1.2);
+        vertices.push_back(first + coarse(radius * std::cos(angle)) * e +
+                           coarse(radius * std::sin(angle)) * f);
+    }
+    return PolygonSkeleton(std::move(vertices));
+}
+
 // Its first place is that one, others are near it; some directions are along an axis.
-Skeleton random_skeleton(Shape shape, const Vec3d& first, Random& random) {
+// Curves are as wild as four places can be, or `calm`: of a few arcs.
+Skeleton random_skeleton(Shape shape, const Vec3d& first, bool calm, Random& random) {
     Skeleton skeleton = skeleton_of(shape);
     if (auto* const chain = std::get_if<PolylineSkeleton>(&skeleton)) {
         chain->points.resize(2 + random.below(5));
+    }
+    if (std::holds_alternative<PolygonSkeleton>(skeleton)) {
+        PolygonSkeleton polygon;
+        do polygon = random_polygon(first, random);
+        while (polygon.fault());
+        return polygon;
+    }
+    if (auto* const curve = std::get_if<CurveSkeleton>(&skeleton)) {
+        curve->control_points.resize(3 + random.below(2));
+        if (calm) {
+            const Vec3d along = rounded_off(random.in_cube(0.5));
+            for (std::size_t i = 0; i < curve->control_points.size(); ++i) {
+                curve->control_points[i] =
+                    first + static_cast<double>(i) * along + rounded_off(random.in_cube(0.08));
+            }
+            return skeleton;
+        }
     }
     const Members members(skeleton);
     for (Vec3d* const place : members.places) {
@@ -45,7 +89,9 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     Element element;
     const Vec3d first = rounded_off(random.in_cube(half));
     const auto shape = static_cast<Shape>(random.below(shape_count));
-    element.skeleton = random_skeleton(recipe.only ? recipe.only->shape : shape, first, random);
+    const bool calm = recipe.elements > 30 || random.chance(0.7);
+    element.skeleton =
+        random_skeleton(recipe.only ? recipe.only->shape : shape, first, calm, random);
     const auto kernel = static_cast<KernelKind>(random.below(kernel_count));
     element.kernel = recipe.only ? recipe.only->kernel : kernel;
     element.strength = random.uniform(0.5, 1.5) * (random.chance(0.2) ? -1 : 1);

@@ -113,6 +113,15 @@ inline Affine enclosed(const Affine&, const Span& value, const Span&) {
     return affine_detail::rounded(midpoint(value), 0, radius(value), mag(value));
 }
 
+// By the mean value theorem, from t's middle.
+inline Affine along_slope(const Affine& t, const Span& at_middle, const Span& slope) {
+    const double mid = midpoint(at_middle), rate = midpoint(slope);
+    return affine_detail::rounded(
+        mid, rate * t.lin,
+        radius(at_middle) + radius(slope) * (std::abs(t.lin) + t.err) + std::abs(rate) * t.err,
+        std::abs(mid) + mag(slope) * affine_detail::magnitude(t));
+}
+
 inline Affine any_kernel(const Affine&) { return {0.5, 0, 0.5 * (1 + 4 * affine_detail::u)}; }
 
 // Where the foot passes an end of the segment, |v - lambda M|^2 with lambda clamped to [0, 1].

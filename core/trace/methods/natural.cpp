@@ -33,6 +33,9 @@ void RayField::build(const Field& field, const ElementList& list, const Ray& ray
         const Vector rate = times(scale, direction);
         const Vector start = times(scale, minus(origin, vector(field.a(i))));
         e.from = moving(start, rate);
+        e.curve.origin = scaled_ray.origin;
+        e.curve.direction = scaled_ray.direction;
+        e.curve.width = field.width[i];
         with_field_shape(
             e.shape, [&]<class S>() { S::see(field.columns(i), scale, origin, start, rate, e); });
     }

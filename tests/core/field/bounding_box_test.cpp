@@ -81,8 +81,8 @@ double extreme(const Skeleton& skeleton, std::size_t axis, double sign) {
     return std::visit(
         [&]<class S>(const S& s) {
             double most = -infinity<double>;
-            for (std::size_t part = 0; part < parts_of(s); ++part) {
-                most = std::max(most, sign * S::farthest(part_of(s, part), {}, direction)[axis]);
+            for (const SkeletonPart& part : parts_of(s)) {
+                most = std::max(most, sign * S::farthest(part.seen(), {}, direction)[axis]);
             }
             return sign * most;
         },

@@ -105,7 +105,9 @@ TEST(Refit, ClustersFollowWhatMoves) {
             ASSERT_LE(std::sqrt(dot(off, off)), clusters.radius[c]);
             ASSERT_EQ(field.width[i], element.width);
             const Vec3d a =
-                std::visit([](const auto& s) { return part_of(s, 0).a; }, element.skeleton);
+                std::visit([](const auto& s) { return parts_of(s)[0].columns.a; },
+                           has_numbers(field.shape[i]) ? scene.elements[field.source[i]].skeleton
+                                                       : element.skeleton);
             ASSERT_EQ(field.a(i), a);
             off = a - center;
             ASSERT_NEAR(double{clusters.members.x[i]}, off.x / field.unit,

