@@ -80,16 +80,12 @@ template <class Skeleton>
 Fault find_fault(const Member<Skeleton, std::vector<Vec3d>>& member,
                  const std::vector<Vec3d>& places) {
     const std::string key(member.key);
-    if (places.size() < member.least) {
+    if (places.size() < member.least || places.size() > member.most) {
+        const bool has_end = member.most < std::numeric_limits<std::size_t>::max();
+        const std::string more = has_end ? " or " + std::to_string(member.most) : " or more";
         return SceneFault{"/" + key, "the list of " + key + " has " +
                                          std::to_string(places.size()) + "; it must have " +
-                                         std::to_string(member.least) + " or more"};
-    }
-    if (places.size() > member.most) {
-        return SceneFault{"/" + key, "the list of " + key + " has " +
-                                         std::to_string(places.size()) + "; it must have " +
-                                         std::to_string(member.least) + " to " +
-                                         std::to_string(member.most)};
+                                         std::to_string(member.least) + more};
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -111,7 +107,7 @@ Fault find_fault(const S& skeleton) {
     });
     // What is right by itself may not go together.
     if constexpr (requires { skeleton.fault(); }) {
-        const auto& first = std::get<0>(S::members());
+        const auto first = std::get<0>(S::members());
         if (const auto wrong = fault ? std::nullopt : skeleton.fault()) {
             fault = SceneFault{"/" + std::string(first.key),
                                "the " + std::string(first.key) + " " + *wrong};

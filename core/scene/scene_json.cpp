@@ -57,8 +57,6 @@ template <class S>
 constexpr std::string_view word_with_article{characters_with_article<S>.data(),
                                              characters_with_article<S>.size()};
 
-// The format has these too, as soon as they are in core/shape/shapes.h.
-constexpr std::array<std::string_view, 2> shapes_to_come{"polygon", "curve"};
 constexpr std::array<std::string_view, 2> attachments{"camera", "scene"};
 
 // The kinds of objects that a scene is made of.
@@ -314,12 +312,6 @@ void read(const Node& node, Element& element) {
             if (!shape.value.is_text(shape_words[i])) continue;
             return with_shape(static_cast<Shape>(i),
                               [&]<class S>() { read_element<S>(node, element); });
-        }
-        for (const std::string_view word : shapes_to_come) {
-            if (!shape.value.is_text(word)) continue;
-            throw shape.fault("the shape " + in_quotes(word) +
-                              " belongs to the format but is not built yet; use " +
-                              listed(shape_words, "or"));
         }
     }
     throw shape.wrong_kind(listed(shape_words, "or"));

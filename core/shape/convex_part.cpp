@@ -311,24 +311,27 @@ std::optional<std::string> polygon_fault(std::span<const Vec3d> vertices) {
     }
     const double ulp = std::nextafter(largest, infinity<double>) - largest;
     if (off > std::max(1e-9 * std::sqrt(diameter), std::ldexp(8 * ulp, -plane.exponent))) {
-        return "do not lie in one plane";
+        return "do not lie in one plane; move them into it, to 1e-9 of the diameter";
     }
     const std::size_t count = vertices.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point2 along = plane.at[(i + 1) % count] - plane.at[i];
+        if (dot(along, along) > 0) continue;
+        return "have one place twice, number " + std::to_string(i + 1) +
+               " and the next; leave one out";
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const Point2 &a = plane.at[i], &b = plane.at[(i + 1) % count],
                      &c = plane.at[(i + 2) % count];
         const std::string number = std::to_string(i + 1);
-        if (!(dot(b - a, b - a) > 0)) {
-            return "number " + number + " and the next are the same place";
-        }
         if (std::abs(area(a, b, c)) <= too_small && dot(b - a, c - b) < 0) {
-            return "turn back on themselves after number " + number;
+            return "turn back on themselves after number " + number + "; they must go around once";
         }
         for (std::size_t k = i + 2; k < count; ++k) {
             if (i == 0 && k + 1 == count) continue;
             if (!cross_or_touch(a, b, plane.at[k], plane.at[(k + 1) % count])) continue;
-            return "cross or touch themselves: the sides after number " + number + " and number " +
-                   std::to_string(k + 1);
+            return "make sides that cross or touch, after number " + number + " and number " +
+                   std::to_string(k + 1) + "; they must go around once";
         }
     }
     return std::nullopt;

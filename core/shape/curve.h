@@ -84,24 +84,10 @@ struct CurveSkeleton {
     }
 
     static Nearest nearest(const SkeletonColumns& c, const Vec3d& from_a, double width) {
-        using namespace curve_arc;
-        const Vec3d k0 = vector(c, at_k0);
-        const Vec3d v = from_a - k0;
-        const Feet found = feet(c.numbers, {Interval<double>(v.x), Interval<double>(v.y),
-                                            Interval<double>(v.z)});
-        double least = infinity<double>;
-        Vec3d away;
-        Interval<double> where = found.x[0];
-        for (std::size_t k = 0; k < found.count; ++k) {
-            where = hull(where, found.x[k]);
-            const Vec3d from = from_a - place(c, midpoint(found.x[k]));
-            const double square = dot(from, from);
-            if (square < least) away = from;
-            least = std::min(least, square);
-        }
-        const Vec3d scaled{away.x / width, away.y / width, away.z / width};
-        constexpr double one_place = 1e-3;
-        return {dot(scaled, scaled), scaled, where.hi - where.lo < one_place};
+        const curve_arc::OffArc off =
+            curve_arc::off_arc(c.numbers, from_a - vector(c, curve_arc::at_k0));
+        const Vec3d away{off.away.x / width, off.away.y / width, off.away.z / width};
+        return {dot(away, away), away, off.one_place};
     }
 
     static bool along_ray(const SkeletonColumns& c, double width, const SeenFrom& ray,

@@ -250,6 +250,44 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
     return found;
 }
 
+// The cases are those of the lanes' `turning` in curve.h.
+curve_arc::OffArc curve_arc::off_arc(std::span<const double> numbers, const Vec3d& v) {
+    const auto vector = [&](std::size_t k) {
+        return Vec3d{numbers[k], numbers[k + 1], numbers[k + 2]};
+    };
+    const double slowest = numbers[at_slowest], fastest = numbers[at_fastest],
+                 turn = numbers[at_turn], size = numbers[at_radius];
+    if (!(slowest > 0)) return {v};
+    const Vec3d k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
+    const double reach = std::sqrt(dot(v, v)), g0 = dot(v, k1);
+    const double own = (fastest + size) * (fastest + size);
+    if (std::abs(g0) > 1.01 * ((2 * reach + 2 * size) * turn + 2 * own)) {
+        return {v - vector(g0 > 0 ? at_end : at_begin)};
+    }
+    const Foot foot(numbers, {Span(v.x), Span(v.y), Span(v.z)});
+    const double x = foot.zero(-1, 1);
+    const Vec3d away = v - x * (k1 + x * (k2 + x * k3));
+    const double inward = 2 * dot(v, k2) + (reach + fastest) * numbers[at_third] +
+                          numbers[at_speeding] + 0.5 * turn * turn;
+    const double bent = std::min(std::sqrt(dot(away, away)) * turn, inward);
+    if (bent < 0.9 * slowest * slowest) return {away};
+
+    const Feet found = feet(numbers, {Span(v.x), Span(v.y), Span(v.z)});
+    constexpr double apart = 1e-3;
+    OffArc best;
+    double least = infinity<double>;
+    Span where = found.x[0];
+    for (std::size_t k = 0; k < found.count; ++k) {
+        const double at = midpoint(found.x[k]);
+        const Vec3d from = v - at * (k1 + at * (k2 + at * k3));
+        where = hull(where, found.x[k]);
+        if (dot(from, from) < least) best.away = from;
+        least = std::min(least, dot(from, from));
+    }
+    best.one_place = where.hi - where.lo < apart;
+    return best;
+}
+
 std::vector<SkeletonPart> curve_arcs(std::span<const Vec3d> control_points) {
     constexpr double no_size = 0x1p-46;
     constexpr double shortest = 0x1p-30;  // in the curve's parameter

@@ -44,6 +44,14 @@ struct Feet {
 // Of all v in a box, k0 subtracted. Sharp where it is thin.
 [[nodiscard]] Feet feet(std::span<const double> numbers, const Vec3<Interval<double>>& v);
 
+// What leads from the nearest place to v, k0 subtracted, to nearest: from the one foot that Newton's steps
+// find, or from an end, where there is certainly but one; else by `feet`.
+struct OffArc {
+    Vec3d away;
+    bool one_place = true;  // else there may be another as near, elsewhere
+};
+[[nodiscard]] OffArc off_arc(std::span<const double> numbers, const Vec3d& v);
+
 // v - c(x).
 [[nodiscard]] Vec3<Interval<double>> away_at(std::span<const double> numbers,
                                              const Vec3<Interval<double>>& v,

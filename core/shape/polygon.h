@@ -253,7 +253,8 @@ struct ShapeLanes<PolygonSkeleton> {
         error = hn::Add(error, lost(d, e, s));
         const auto number = [&](std::size_t k) HWY_ATTR { return e.number(k); };
         const auto edge = [&](std::size_t k, std::size_t i) HWY_ATTR {
-            const V<Tag> last = hn::Sub(e.number(at_count), constant(d, 1));
+            // Lanes beyond the last element may have any number for a count.
+            const V<Tag> last = at_least_0(hn::Sub(e.number(at_count), constant(d, 1)));
             return e.number_at(hn::MulAdd(hn::Min(constant(d, static_cast<double>(k)), last),
                                           constant(d, static_cast<double>(per_edge)),
                                           constant(d, static_cast<double>(at_edges + i))));
