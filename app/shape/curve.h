@@ -54,9 +54,7 @@ struct ShapeInHand<CurveSkeleton> {
         return move_all(curve.control_points, curve.middle(), view, motion);
     }
 
-    static SkeletonLines lines(const Element& element) {
-        return {{places(element, line_pieces)}};
-    }
+    static SkeletonLines lines(const Element& element) { return {{places(element, line_pieces)}}; }
     static std::vector<PictureLine> outline(const Projection& view, const Element& element,
                                             double widths) {
         std::vector<PictureLine> all;

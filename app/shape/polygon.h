@@ -26,7 +26,7 @@ struct ShapeInHand<PolygonSkeleton> {
     static constexpr std::string_view with_article = "a polygon";
     static constexpr std::array icon = {
         stroke::line(-0.7f, 0.6f, -0.45f, -0.55f), stroke::line(-0.45f, -0.55f, 0.45f, -0.65f),
-        stroke::line(0.45f, -0.65f, 0.75f, 0.2f),  stroke::line(0.75f, 0.2f, 0.1f, 0.7f),
+        stroke::line(0.45f, -0.65f, 0.75f, 0.2f), stroke::line(0.75f, 0.2f, 0.1f, 0.7f),
         stroke::line(0.1f, 0.7f, -0.7f, 0.6f)};
 
     static PolygonSkeleton added(const Vec3d& at, double size, int exponent) {
@@ -139,8 +139,7 @@ struct ShapeInHand<PolygonSkeleton> {
         for (Vec3d& vertex : polygon.vertices) {
             const Vec3d v = vertex - middle;
             // Rodrigues, with (1 - cos) / sin^2 = 1 / (1 + cos)
-            vertex = middle + cosine * v + cross(axis, v) +
-                     (dot(axis, v) / (1 + cosine)) * axis;
+            vertex = middle + cosine * v + cross(axis, v) + (dot(axis, v) / (1 + cosine)) * axis;
         }
         return true;
     }

@@ -63,7 +63,7 @@ inline constexpr double greatest_turn = numbered<shape> ? 0.25 : 1e-2;
 
 // Where it may be far from the nearest place, too, but always is of the skeleton.
 template <Shape shape>
-inline constexpr bool takes_any_place = numbered<shape> && SkeletonOf<shape>::has_kinks;
+inline constexpr bool takes_any_place = numbered<shape>&& SkeletonOf<shape>::has_kinks;
 
 // From the field, in double.
 template <Shape shape>
@@ -197,8 +197,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             // `away` leads from some place of the skeleton: k is no more than it should be, but for what
             // rounding takes from |away|, with q r < 0.004 less than a hundredth of Blinn's k, and 3 r of others.
             const V<Tag> all = hn::Add(hn::Add(c_length, e.parameter), c(on.H));
-            const V<Tag> r = hn::Mul(hn::MulAdd(c(64 * on.u), all, c(on.place_error)),
-                                     arrivals.inverse_width);
+            const V<Tag> r =
+                hn::Mul(hn::MulAdd(c(64 * on.u), all, c(on.place_error)), arrivals.inverse_width);
             const V<Tag> most = hn::MulAdd(arrivals.peak, c(1.01), hn::Mul(c(3), r));
             kinked = hn::Or(kinked, hn::Not(is_exact));
             off.value = hn::IfThenElse(is_exact, off.value, most);
@@ -249,9 +249,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             // 1 / |m|^2 of a very short segment and such are beyond float.
             const V<Tag> largest = hn::Max(square, strength);
             const M<Tag> knows_slope = hn::Lt(eta.slope, c(greatest_turn<shape>));
-            fit = hn::And(fit, hn::And(takes_any_place<shape> ? hn::Or(knows_slope, kinked)
-                                                              : knows_slope,
-                                       hn::Lt(largest, c(1e12))));
+            fit = hn::And(
+                fit, hn::And(takes_any_place<shape> ? hn::Or(knows_slope, kinked) : knows_slope,
+                             hn::Lt(largest, c(1e12))));
             if constexpr (has_axis<shape>) fit = hn::And(fit, hn::Lt(parameter, c(1e12)));
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));

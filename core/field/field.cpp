@@ -177,8 +177,8 @@ void put_numbers_in_units(Field& field) {
             if constexpr (S::has_numbers) {
                 const SkeletonColumns columns = field.columns(i);
                 const std::size_t count = S::size_of(columns);
-                float* const to =
-                    field.numbers_in_units.data() + static_cast<std::size_t>(field.numbers_first[i]);
+                float* const to = field.numbers_in_units.data() +
+                                  static_cast<std::size_t>(field.numbers_first[i]);
                 for (std::size_t k = 0; k < count; ++k) {
                     to[k] = S::in_units(columns, k, columns.numbers[k], per_unit);
                 }
@@ -277,8 +277,8 @@ Field compile(const Scene& scene, int threads) {
         const Shape shape = field_shape_of(element);
         groups[group_of(shape, element.kernel)].push_back(static_cast<std::uint32_t>(i));
         if (has_numbers(shape)) {
-            visible += with_numbers.emplace(static_cast<std::uint32_t>(i), element)
-                           .first->second.count();
+            visible +=
+                with_numbers.emplace(static_cast<std::uint32_t>(i), element).first->second.count();
         } else {
             visible += Parts::count_of(element);
         }

@@ -81,7 +81,8 @@ Plane plane_of(std::span<const Vec3d> vertices) {
     const Vec3dd& along = plane.from_first[farthest];
     plane.e1 = unit(along - dot(along, plane.n) * plane.n);
     plane.e2 = cross(plane.n, plane.e1);
-    for (const Vec3dd& v : plane.from_first) plane.at.push_back({dot(v, plane.e1), dot(v, plane.e2)});
+    for (const Vec3dd& v : plane.from_first)
+        plane.at.push_back({dot(v, plane.e1), dot(v, plane.e2)});
     return plane;
 }
 

@@ -54,12 +54,11 @@ struct CurveSkeleton {
         return curve_arc::in_units(k, value, per_unit);
     }
 
-    // An arc lies in the hull of its Bezier points.
     static Surroundings surroundings(const SkeletonColumns& c) {
-        return {box_of_hull(c), off_by(c)};
+        return {box_of_arc(c), off_by(c)};
     }
     static Box3 box(const SkeletonColumns& c) {
-        Box3 box = box_of_hull(c);
+        Box3 box = box_of_arc(c);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             box.lo[axis] = sub_down(box.lo[axis], off_by(c));
             box.hi[axis] = add_up(box.hi[axis], off_by(c));
@@ -74,12 +73,18 @@ struct CurveSkeleton {
         using namespace curve_arc;
         Vec3d best;
         double most = -infinity<double>;
-        for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+        const auto look = [&](double x) {
             const Vec3d to_place = (c.a - from) + place(c, x);
             const double along = dot(to_place, direction);
             if (along > most) best = to_place;
             most = std::max(most, along);
-        }
+        };
+        look(-1);
+        look(1);
+        const double half = dot(vector(c, at_k2), direction),
+                     first = dot(vector(c, at_k1), direction),
+                     last = 3 * dot(vector(c, at_k3), direction);
+        for_turns(first, half, last, look);
         return best;
     }
 
@@ -101,8 +106,8 @@ struct CurveSkeleton {
             !(width > 1e-75 && width < 1e75 && c.parameter < 1e75)) {
             return false;
         }
-        e.form = CurveAlongRay{c.a,       ray.origin, ray.direction,           width,
-                               c.numbers, square,     size * (1 + 4 * u) + 1e-300};
+        e.form = CurveAlongRay{
+            c.a, ray.origin, ray.direction, width, c.numbers, square, size * (1 + 4 * u) + 1e-300};
         const double reach = (std::sqrt(ray.cut) + size) * (1 + 16 * u);
         e.active = sublevel(square, reach * reach * (1 + 4 * u));
         return true;
@@ -139,18 +144,31 @@ struct CurveSkeleton {
             std::max({std::abs(c.a.x), std::abs(c.a.y), std::abs(c.a.z)}) + c.parameter;
         return 0x1p-46 * c.parameter + 0x1p-50 * largest;
     }
-    // Of k0 + x k1 + x^2 k2 + x^3 k3 over [-1, 1]: b0 .. b3.
-    static Box3 box_of_hull(const SkeletonColumns& c) {
+    // Of the arc itself: its ends, and where a coordinate turns. A place beside one where it does is off by the
+    // square of that.
+    static Box3 box_of_arc(const SkeletonColumns& c) {
         using namespace curve_arc;
-        const Vec3d k0 = vector(c, at_k0), k1 = vector(c, at_k1), k2 = vector(c, at_k2),
-                    k3 = vector(c, at_k3);
-        const Vec3d even = k0 - k2, odd = (1.0 / 3) * k1 - k3;
         Box3 box;
-        for (const Vec3d& b : {k0 + k2 - (k1 + k3), even - odd, even + odd, k0 + k2 + (k1 + k3)}) {
-            const Vec3d point = c.a + b;
-            box.include({point, point});
+        const auto include = [&](double x) {
+            const Vec3d at = c.a + place(c, x);
+            box.include({at, at});
+        };
+        include(-1);
+        include(1);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for_turns(c.numbers[at_k1 + axis], c.numbers[at_k2 + axis], 3 * c.numbers[at_k3 + axis],
+                      include);
         }
         return box;
+    }
+    // visit(x) of the zeros of first + 2 half x + last x^2 between the ends.
+    template <class Visit>
+    static void for_turns(double first, double half, double last, const Visit& visit) {
+        const double root = std::sqrt(std::max(half * half - first * last, 0.0));
+        const double larger = -(half + std::copysign(root, half));
+        for (const double x : {larger / last, first / larger}) {
+            if (x > -1 && x < 1) visit(x);
+        }
     }
 };
 
@@ -186,39 +204,37 @@ struct ShapeLanes<CurveSkeleton> {
         };
         const Vec3v<Tag> k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
         const V<Tag> one = constant(d, 1), two = constant(d, 2), three = constant(d, 3);
-        const V<Tag> g0 = dot<Tag>(v, k1),
-                     g1 = hn::MulSub(two, dot<Tag>(v, k2), number(at_g)),
+        const V<Tag> g0 = dot<Tag>(v, k1), g1 = hn::MulSub(two, dot<Tag>(v, k2), number(at_g)),
                      g2 = hn::MulSub(three, dot<Tag>(v, k3), number(at_g + 1)),
                      g3 = hn::Neg(number(at_g + 2)), g4 = hn::Neg(number(at_g + 3)),
                      g5 = hn::Neg(number(at_g + 4));
         const V<Tag> s1 = hn::Add(g2, g2), s2 = hn::Mul(three, g3),
                      s3 = hn::Mul(constant(d, 4), g4), s4 = hn::Mul(constant(d, 5), g5);
         const V<Tag> falls = hn::Set(d, -least_square<Real>);
-        const auto onward = [&](V<Tag> x, V<Tag> g, V<Tag> slope)
-                                HWY_ATTR __attribute__((always_inline)) {
+        const auto onward = [&](V<Tag> x, V<Tag> g, V<Tag> slope) HWY_ATTR
+            __attribute__((always_inline)) {
             const V<Tag> next = hn::Sub(x, hn::Div(g, hn::Min(slope, falls)));
             return hn::Min(hn::Max(next, hn::Neg(one)), one);
         };
         V<Tag> x = onward(hn::Zero(d), g0, g1);
         for (int step = 1; step < newton_steps<Real>; ++step) {
             const V<Tag> g = hn::MulAdd(
-                x,
-                hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, g5, g4), g3), g2), g1), g0);
-            const V<Tag> slope = hn::MulAdd(
-                x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, s4, s3), s2), s1), g1);
+                x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, g5, g4), g3), g2), g1),
+                g0);
+            const V<Tag> slope =
+                hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, s4, s3), s2), s1), g1);
             x = onward(x, g, slope);
         }
-        const auto away = [&](V<Tag> k1i, V<Tag> k2i, V<Tag> k3i, V<Tag> vi)
-                              HWY_ATTR __attribute__((always_inline)) {
+        const auto away = [&](V<Tag> k1i, V<Tag> k2i, V<Tag> k3i, V<Tag> vi) HWY_ATTR
+            __attribute__((always_inline)) {
             return hn::NegMulAdd(x, hn::MulAdd(x, hn::MulAdd(x, k3i, k2i), k1i), vi);
         };
-        OffArc<Tag> best{{away(k1.x, k2.x, k3.x, v.x), away(k1.y, k2.y, k3.y, v.y),
-                          away(k1.z, k2.z, k3.z, v.z)},
-                         hn::Zero(d)};
+        OffArc<Tag> best{
+            {away(k1.x, k2.x, k3.x, v.x), away(k1.y, k2.y, k3.y, v.y), away(k1.z, k2.z, k3.z, v.z)},
+            hn::Zero(d)};
         best.square = dot<Tag>(best.from, best.from);
         const V<Tag> clearly = hn::Set(d, 1 - 16 * Margins<Real>::margin);
-        const auto compare = [&](const Vec3v<Tag>& from)
-                                 HWY_ATTR __attribute__((always_inline)) {
+        const auto compare = [&](const Vec3v<Tag>& from) HWY_ATTR __attribute__((always_inline)) {
             const V<Tag> square = dot<Tag>(from, from);
             const M<Tag> nearer = hn::Lt(square, hn::Mul(best.square, clearly));
             best = {{hn::IfThenElse(nearer, from.x, best.from.x),
@@ -241,11 +257,10 @@ struct ShapeLanes<CurveSkeleton> {
             return hn::Set(d, numbers[k]);
         };
         const Vec3v<Tag> from = from_first_place(d, e, p);
-        const OffArc<Tag> off =
-            off_arc(d, number,
-                    Vec3v<Tag>{hn::Sub(from.x, number(curve_arc::at_k0)),
-                               hn::Sub(from.y, number(curve_arc::at_k0 + 1)),
-                               hn::Sub(from.z, number(curve_arc::at_k0 + 2))});
+        const OffArc<Tag> off = off_arc(d, number,
+                                        Vec3v<Tag>{hn::Sub(from.x, number(curve_arc::at_k0)),
+                                                   hn::Sub(from.y, number(curve_arc::at_k0 + 1)),
+                                                   hn::Sub(from.z, number(curve_arc::at_k0 + 2))});
         square = off.square;
         return off.from;
     }
@@ -261,7 +276,8 @@ struct ShapeLanes<CurveSkeleton> {
     static HWY_INLINE Vec3v<Tag> from_middle(const Vec3v<Tag>& middle,
                                              const Vec3<hn::TFromD<Tag>>& axis, hn::TFromD<Tag> t) {
         const Tag d;
-        return {hn::Sub(hn::Set(d, t * axis.x), middle.x), hn::Sub(hn::Set(d, t * axis.y), middle.y),
+        return {hn::Sub(hn::Set(d, t * axis.x), middle.x),
+                hn::Sub(hn::Set(d, t * axis.y), middle.y),
                 hn::Sub(hn::Set(d, t * axis.z), middle.z)};
     }
 
@@ -281,9 +297,9 @@ struct ShapeLanes<CurveSkeleton> {
         using Real = hn::TFromD<Tag>;
         const Tag d;
         // of c, and of the choice
-        error = hn::MulAdd(hn::Add(hn::Add(e.magnitude, hn::Set(d, s.magnitude)),
-                                   e.number(at_fastest)),
-                           hn::Set(d, 16 * Margins<Real>::margin), error);
+        error =
+            hn::MulAdd(hn::Add(hn::Add(e.magnitude, hn::Set(d, s.magnitude)), e.number(at_fastest)),
+                       hn::Set(d, 16 * Margins<Real>::margin), error);
         const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
             return e.number(k);
         };
@@ -299,8 +315,8 @@ struct ShapeLanes<CurveSkeleton> {
                                    hn::Add(off.from.y, hn::Set(d, way * s.axis.y)),
                                    hn::Add(off.from.z, hn::Set(d, way * s.axis.z))};
             const V<Tag> here = hn::Sqrt(off.square);
-            const V<Tag> least = hn::Sqrt(at_least_0(
-                hn::Sub(off.square, excess(d, fastest, turn, hn::Add(here, error)))));
+            const V<Tag> least = hn::Sqrt(
+                at_least_0(hn::Sub(off.square, excess(d, fastest, turn, hn::Add(here, error)))));
             return AtEnd{at_least_0(hn::Sub(least, error)), here, length_of(d, there)};
         };
         const AtEnd first = at_end(s.begin, s.end), last = at_end(s.end, s.begin);
@@ -363,32 +379,31 @@ struct ShapeLanes<CurveSkeleton> {
         const V<Tag> third = e.number(at_third), speeding = e.number(at_speeding);
         // |k2| + |k3| <= |c''| / 2, at the most; and |v.k2| as computed is off by `aside` |k2|
         const V<Tag> across = hn::Max(dot<Tag>(v0, k2), dot<Tag>(v1, k2));
-        const V<Tag> inward = hn::Add(
-            hn::MulAdd(hn::Add(reach, fastest), third, hn::MulAdd(across, constant(d, 2), speeding)),
-            hn::Mul(turn, hn::MulAdd(constant(d, 0.5), turn, aside)));
+        const V<Tag> inward = hn::Add(hn::MulAdd(hn::Add(reach, fastest), third,
+                                                 hn::MulAdd(across, constant(d, 2), speeding)),
+                                      hn::Mul(turn, hn::MulAdd(constant(d, 0.5), turn, aside)));
         const V<Tag> bent = hn::Mul(hn::Div(hn::Min(hn::Mul(farthest, turn), inward), square),
                                     hn::Set(d, Margin::more));
         const V<Tag> straight =
             hn::Div(hn::Set(d, Margin::more), hn::Max(hn::Sub(one, bent), constant(d, 0.1)));
         const V<Tag> outward = hn::Max(straight, zero);
-        const V<Tag> inverse = hn::Mul(
-            hn::Max(straight, one),
-            hn::MulAdd(hn::Div(hn::Mul(farthest, third), speed_change(d, speeding, square)),
-                       hn::Set(d, Margin::more), one));
+        const V<Tag> inverse =
+            hn::Mul(hn::Max(straight, one),
+                    hn::MulAdd(hn::Div(hn::Mul(farthest, third), speed_change(d, speeding, square)),
+                               hn::Set(d, Margin::more), one));
         const M<Tag> is_smooth =
             hn::And(hn::Lt(bent, constant(d, most_bent)), hn::Gt(slowest, zero));
         const V<Tag> least = hn::NegMulAdd(fastest, aside, hn::Min(hn::Abs(g0), hn::Abs(g1)));
         const V<Tag> own = hn::Mul(square_of(hn::Add(fastest, radius)), constant(d, 1.01));
         // |c' - k1| <= |c''|, at most
-        const V<Tag> wanted = hn::MulAdd(
-            hn::MulAdd(reach, constant(d, 2), hn::Add(radius, radius)), turn, hn::Add(own, own));
+        const V<Tag> wanted = hn::MulAdd(hn::MulAdd(reach, constant(d, 2), hn::Add(radius, radius)),
+                                         turn, hn::Add(own, own));
         const M<Tag> at_an_end = hn::And(hn::Gt(hn::Mul(g0, g1), zero),
                                          hn::Gt(least, hn::Mul(wanted, hn::Set(d, Margin::more))));
         const M<Tag> is_point = hn::Or(at_an_end, hn::Not(hn::Gt(slowest, zero)));
         return {hn::IfThenElse(is_point, zero,
                                hn::IfThenElse(is_smooth, hn::Div(inverse, fastest), hn::Neg(one))),
-                hn::IfThenElse(is_point, zero,
-                               hn::IfThenElse(is_smooth, outward, zero))};
+                hn::IfThenElse(is_point, zero, hn::IfThenElse(is_smooth, outward, zero))};
     }
     template <class Tag>
     static HWY_INLINE M<Tag> is_defined(Tag d, const BundleEntry<hn::TFromD<Tag>>&, double,
@@ -435,15 +450,13 @@ struct ShapeLanes<CurveSkeleton> {
             hn::Mul(fastest, hn::IfThenElseZero(hn::Or(is_smooth, is_kinked), steps));
         const V<Tag> own = hn::MulAdd(c(4 * u), all, hn::Mul(c(16 * u), fastest));
         const V<Tag> of_place = hn::Mul(hn::Mul(c(16 * u), all), steeper);
-        const V<Tag> of_kink = hn::MulAdd(
-            hn::Mul(turn, c(0.18)), hn::Add(hn::Div(square_of(fastest), square), one),
-            hn::Mul(all, c(0.5 * share)));
-        const V<Tag> of_point =
-            hn::IfThenElseZero(is_point, hn::Mul(c(2), e.number(at_radius)));
+        const V<Tag> of_kink =
+            hn::MulAdd(hn::Mul(turn, c(0.18)), hn::Add(hn::Div(square_of(fastest), square), one),
+                       hn::Mul(all, c(0.5 * share)));
+        const V<Tag> of_point = hn::IfThenElseZero(is_point, hn::Mul(c(2), e.number(at_radius)));
         const V<Tag> value = hn::Add(hn::Add(hn::Add(eta, own), hn::Add(of_place, of_steps)),
                                      hn::Add(of_point, hn::IfThenElseZero(is_kinked, of_kink)));
-        const V<Tag> of_choice =
-            hn::Mul(hn::Mul(own, c(std::sqrt(17 / share))), hn::Sqrt(steeper));
+        const V<Tag> of_choice = hn::Mul(hn::Mul(own, c(std::sqrt(17 / share))), hn::Sqrt(steeper));
         return {value, hn::Add(hn::Add(of_choice, hn::Mul(eta, steeper)), of_point)};
     }
 };

@@ -39,10 +39,12 @@ CurveAlongRay::At CurveAlongRay::at(double t) const {
         const double from_a = offset(origin[axis], a[axis], t, direction[axis]);
         const double error =
             2 * u * std::abs(from_a) +
-            16 * u * u * (std::abs(origin[axis] - a[axis]) + std::abs(t * direction[axis])) + 1e-300;
+            16 * u * u * (std::abs(origin[axis] - a[axis]) + std::abs(t * direction[axis])) +
+            1e-300;
         const double k0 = numbers[at_k0 + axis];
         const double k0_error = 2 * u * std::abs(k0) + 1e-300;
-        v[axis] = quick::sub(Span(from_a - error, from_a + error), Span(k0 - k0_error, k0 + k0_error));
+        v[axis] =
+            quick::sub(Span(from_a - error, from_a + error), Span(k0 - k0_error, k0 + k0_error));
     }
     const Feet found = feet(numbers, v);
     Span slope = Span::empty_set();
@@ -85,8 +87,8 @@ CurveAlongRay::Over CurveAlongRay::over(double t0, double t1, const At& at0, con
     if (numbers[at_slowest] > 0) {
         const double slowest = numbers[at_slowest];
         // d / R, rounded up
-        const double bent = std::sqrt(range.s.hi) * width * numbers[at_turn] /
-                            (slowest * slowest) * (1 + 16 * u);
+        const double bent =
+            std::sqrt(range.s.hi) * width * numbers[at_turn] / (slowest * slowest) * (1 + 16 * u);
         if (bent < 0.99) range.dds.lo = -2 * speed.hi * bent / (1 - bent) * (1 + 16 * u);
     }
     narrow_by_ends(range, elapsed, at0.s, at0.ds, at1.s, at1.ds);

@@ -88,8 +88,8 @@ struct PolygonSkeleton {
     static Nearest nearest(const SkeletonColumns& c, const Vec3d& from_a, double width) {
         using namespace convex_part;
         const double h = dot(from_a, axis(c, at_n));
-        const OffPart off =
-            nearest_in_plane(c.numbers, c.parameter, dot(from_a, axis(c, at_e1)), dot(from_a, axis(c, at_e2)));
+        const OffPart off = nearest_in_plane(c.numbers, c.parameter, dot(from_a, axis(c, at_e1)),
+                                             dot(from_a, axis(c, at_e2)));
         const Vec3d away = h * axis(c, at_n) + off.x * axis(c, at_e1) + off.y * axis(c, at_e2);
         const double height = h / width, x = off.x / width, y = off.y / width;
         return {height * height + (x * x + y * y),
@@ -184,8 +184,8 @@ struct ShapeLanes<PolygonSkeleton> {
                                                     const Number& number, const Edge& edge,
                                                     V<Tag> size, V<Tag> x, V<Tag> y) {
         const V<Tag> zero = hn::Zero(d);
-        const V<Tag> tau = hn::Mul(number(convex_part::at_margin),
-                                   hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), size));
+        const V<Tag> tau =
+            hn::Mul(number(convex_part::at_margin), hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), size));
         const V<Tag> taken = constant(d, -1);
         V<Tag> nearest = hn::Set(d, infinity<hn::TFromD<Tag>>);
         InPlane<Tag> off{zero, zero};
@@ -200,8 +200,7 @@ struct ShapeLanes<PolygonSkeleton> {
                          off_y = hn::NegMulAdd(foot, ty, from_y);
             const M<Tag> outside = hn::Not(hn::Ge(above, tau));
             beside = hn::Or(beside, outside);
-            const M<Tag> takes =
-                hn::And(outside, hn::And(hn::Gt(along, zero), hn::Lt(along, end)));
+            const M<Tag> takes = hn::And(outside, hn::And(hn::Gt(along, zero), hn::Lt(along, end)));
             const V<Tag> square =
                 hn::IfThenElse(takes, taken, hn::MulAdd(off_x, off_x, hn::Mul(off_y, off_y)));
             const M<Tag> nearer = hn::Lt(square, nearest);
@@ -259,16 +258,15 @@ struct ShapeLanes<PolygonSkeleton> {
                                           constant(d, static_cast<double>(per_edge)),
                                           constant(d, static_cast<double>(at_edges + i))));
         };
-        const std::size_t edge_count = std::min(
-            most_edges, static_cast<std::size_t>(std::fmax(
-                            0, hn::GetLane(hn::MaxOfLanes(d, e.number(at_count))))));
+        const std::size_t edge_count =
+            std::min(most_edges, static_cast<std::size_t>(std::fmax(
+                                     0, hn::GetLane(hn::MaxOfLanes(d, e.number(at_count))))));
         const Vec3v<Tag> right = axis<Tag>(number, at_e1), top = axis<Tag>(number, at_e2);
         const auto distance_at = [&](hn::TFromD<Tag> t) HWY_ATTR {
             const Vec3v<Tag> from = e.from_axis(s.axis, t);
             const V<Tag> h = dot<Tag>(from, e.m);
-            const InPlane<Tag> off =
-                nearest_in_plane(d, edge_count, number, edge, e.parameter, dot<Tag>(from, right),
-                                 dot<Tag>(from, top));
+            const InPlane<Tag> off = nearest_in_plane(d, edge_count, number, edge, e.parameter,
+                                                      dot<Tag>(from, right), dot<Tag>(from, top));
             return hn::Sqrt(hn::MulAdd(h, h, hn::MulAdd(off.x, off.x, hn::Mul(off.y, off.y))));
         };
         const V<Tag> d0 = distance_at(s.begin), d1 = distance_at(s.end);
@@ -295,12 +293,12 @@ struct ShapeLanes<PolygonSkeleton> {
                                               V<Tag> eta, V<Tag> v_length, V<Tag>) {
         const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
         const V<Tag> margin = hn::Add(e.number(convex_part::at_margin), c(8 * on.u));
-        const V<Tag> value = hn::MulAdd(
-            margin, hn::MulAdd(c(6.5), v_length, hn::Mul(c(3.5), e.parameter)), eta);
+        const V<Tag> value =
+            hn::MulAdd(margin, hn::MulAdd(c(6.5), v_length, hn::Mul(c(3.5), e.parameter)), eta);
         const V<Tag> all = hn::Add(v_length, e.parameter);
-        const V<Tag> turned = hn::Mul(
-            hn::Mul(margin, all),
-            hn::MulAdd(c(12), hn::Div(all, e.number(convex_part::at_least)), c(7)));
+        const V<Tag> turned =
+            hn::Mul(hn::Mul(margin, all),
+                    hn::MulAdd(c(12), hn::Div(all, e.number(convex_part::at_least)), c(7)));
         return {value, turned};
     }
 };

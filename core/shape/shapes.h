@@ -40,11 +40,12 @@ enum class Shape : std::uint8_t {
     taper,
     tapered_polyline
 };
-using Shapes =
-    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolygonSkeleton, CurveSkeleton, PolylineSkeleton>;
+using Shapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton,
+                        PolygonSkeleton, CurveSkeleton, PolylineSkeleton>;
 // What fields are made of: those, and what becomes of a list of widths.
-using FieldShapes = TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolygonSkeleton, CurveSkeleton,
-                             PolylineSkeleton, TaperedSegment, TaperedPolyline>;
+using FieldShapes =
+    TypeList<PointSkeleton, SegmentSkeleton, CircleSkeleton, DiscSkeleton, PolygonSkeleton,
+             CurveSkeleton, PolylineSkeleton, TaperedSegment, TaperedPolyline>;
 
 static_assert(index_in<PointSkeleton, Shapes> == static_cast<std::size_t>(Shape::point));
 static_assert(index_in<SegmentSkeleton, Shapes> == static_cast<std::size_t>(Shape::segment));
@@ -72,7 +73,9 @@ concept FieldShape = requires(const SkeletonColumns& columns, const SeenFrom& ra
     { S::has_axis } -> std::convertible_to<bool>;
     { S::is_taper } -> std::convertible_to<bool>;
     { S::is_joined } -> std::convertible_to<bool>;  // several parts: core/shape/joined.h
-    { S::has_numbers } -> std::convertible_to<bool>;  // beside the columns: SkeletonColumns::numbers
+    {
+        S::has_numbers
+        } -> std::convertible_to<bool>;  // beside the columns: SkeletonColumns::numbers
     { S::m_power } -> std::convertible_to<int>;
     { S::parameter_power } -> std::convertible_to<int>;
     { S::surroundings(columns) } -> std::same_as<Surroundings>;
@@ -139,8 +142,7 @@ struct Traits {
     bool is_taper, is_joined, has_numbers;
 };
 inline constexpr auto traits = []<class... S>(TypeList<S...>) {
-    return std::array<Traits, sizeof...(S)>{
-        Traits{S::is_taper, S::is_joined, S::has_numbers}...};
+    return std::array<Traits, sizeof...(S)>{Traits{S::is_taper, S::is_joined, S::has_numbers}...};
 }(FieldShapes{});
 
 }  // namespace shapes_detail

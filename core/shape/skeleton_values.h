@@ -59,7 +59,8 @@ struct SkeletonColumns {
     double length = 0;                // of m, where it has one that matters
     double parameter = 0;             // what else the quick bounds need
     double width_a = 0, width_b = 0;  // of tapers, as written: at a and at b
-    std::span<const double> numbers = {};  // where the shape has_numbers: from the part's first one on
+    std::span<const double> numbers =
+        {};  // where the shape has_numbers: from the part's first one on
 };
 
 // One part of a skeleton with numbers of its own, which its columns do not point to.

@@ -89,9 +89,8 @@ HWY_INLINE void add_fine_group(D d, const BundleEntry<double>* entry, std::uint3
                                V<D> (&lost)[n]) {
     if constexpr (SkeletonOf<shape>::is_joined) {
         for_each_of<n>([&](auto half) HWY_ATTR {
-            add_joined_fine_group<shape, kind, compensated>(d, entry, count, p[half],
-                                                            direction[half], sum[half],
-                                                            branches[half], lost[half]);
+            add_joined_fine_group<shape, kind, compensated>(
+                d, entry, count, p[half], direction[half], sum[half], branches[half], lost[half]);
         });
         return;
     }
@@ -117,11 +116,11 @@ HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
     const D d;
     V<D> lost[n];
     for_each_of<n>([&](auto half) HWY_ATTR { lost[half] = hn::Zero(d); });
-    for_groups(window.fine,
-               [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
-                   add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first,
-                                                            count, p, direction, value, branches, lost);
-               });
+    for_groups(window.fine, [&]<Shape shape, KernelKind kind>(std::size_t first,
+                                                              std::uint32_t count) HWY_ATTR {
+        add_fine_group<shape, kind, compensated>(d, window.fine.entry.data() + first, count, p,
+                                                 direction, value, branches, lost);
+    });
     if constexpr (compensated) {
         for_each_of<n>([&](auto half)
                            HWY_ATTR { value[half].f = hn::Add(value[half].f, lost[half]); });
@@ -241,9 +240,9 @@ struct Enclosed {
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
         V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
         if (task.has_joined) {
-            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, c(reach)),
-                                                hn::Max(branches.above, branches.below),
-                                                branches.anywhere));
+            bend = hn::Add(
+                bend, hn::IfThenElse(hn::Le(delta, c(reach)),
+                                     hn::Max(branches.above, branches.below), branches.anywhere));
         }
         const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
         // Then size / slope_lo < delta, and f < -left_out at m - delta.
@@ -397,8 +396,14 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
     const auto set = [&](Lanes::State state)
                          HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
     const double error = 2 * (window.fine_bounds.above + window.fine_bounds.below);
-    const Enclosing task{window,   threshold, unit, half_width, common_cell(half_width),
-                         left_out, joined_entries(window.fine).any(), error};
+    const Enclosing task{window,
+                         threshold,
+                         unit,
+                         half_width,
+                         common_cell(half_width),
+                         left_out,
+                         joined_entries(window.fine).any(),
+                         error};
     const Outcome outcome{pinned, otherwise};
     Batch batch;
     std::uint64_t steps = 0;

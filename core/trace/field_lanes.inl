@@ -57,8 +57,8 @@ struct Branches {
 // Returns the greatest k of the parts; `entry` leads to the first, then to what follows the last. Within reach a part of an element
 // with b > 0 whose F is less by D is no greater than if its slope were less by D / reach.
 template <Shape shape, KernelKind kind, class Tag>
-HWY_INLINE V<Tag> add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry,
-                            const Vec3v<Tag>& p, const Vec3v<Tag>& direction, V<Tag>& slope_sum,
+HWY_INLINE V<Tag> add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry, const Vec3v<Tag>& p,
+                            const Vec3v<Tag>& direction, V<Tag>& slope_sum,
                             Branches<Tag>& branches) {
     using Real = hn::TFromD<Tag>;
     const bool adds = entry->strength > 0;
@@ -71,9 +71,8 @@ HWY_INLINE V<Tag> add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry,
         const Vec3v<Tag> away = away_from<shape>(d, e, p, square);
         const V<Tag> s = hn::Mul(square, hn::Set(d, e.inverse_square));
         const KernelValue<Tag> value = LanesOf<kind>::at(d, s);
-        return Part{
-            s, value.k,
-            hn::Mul(hn::Mul(hn::Set(d, e.slope), value.dk), dot<Tag>(away, direction))};
+        return Part{s, value.k,
+                    hn::Mul(hn::Mul(hn::Set(d, e.slope), value.dk), dot<Tag>(away, direction))};
     };
     Part best = part_of(*entry);
     V<Tag> lowest = best.slope, highest = best.slope;
@@ -91,8 +90,7 @@ HWY_INLINE V<Tag> add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry,
                 hn::IfThenElse(nearer, part.slope, best.slope)};
     }
     slope_sum = hn::Add(slope_sum, best.slope);
-    const V<Tag> anywhere =
-        hn::Max(hn::Sub(highest, best.slope), hn::Sub(best.slope, lowest));
+    const V<Tag> anywhere = hn::Max(hn::Sub(highest, best.slope), hn::Sub(best.slope, lowest));
     V<Tag> above = anywhere, below = anywhere;
     if (adds) {
         tilt = hn::Mul(tilted, best.k);
@@ -123,8 +121,8 @@ HWY_NOINLINE void add_joined_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* en
 
 template <Shape shape, KernelKind kind, class Tag>
 HWY_INLINE void add_group(Tag d, const BundleEntry<hn::TFromD<Tag>>* entry, std::uint32_t count,
-                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction,
-                          FieldValue<Tag>& sum, Branches<Tag>& branches) {
+                          const Vec3v<Tag>& p, const Vec3v<Tag>& direction, FieldValue<Tag>& sum,
+                          Branches<Tag>& branches) {
     if constexpr (SkeletonOf<shape>::is_joined) {
         add_joined_group<shape, kind>(d, entry, count, p, direction, sum, branches);
         return;
@@ -177,11 +175,10 @@ JoinedEntries joined_entries(const StageEntries<Real>& stage) {
 template <class Tag>
 HWY_INLINE void add(Tag d, const StageEntries<hn::TFromD<Tag>>& stage, const Vec3v<Tag>& p,
                     const Vec3v<Tag>& direction, FieldValue<Tag>& sum, Branches<Tag>& branches) {
-    for_groups(
-        stage, [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
-            add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum,
-                                   branches);
-        });
+    for_groups(stage, [&]<Shape shape, KernelKind kind>(std::size_t first,
+                                                        std::uint32_t count) HWY_ATTR {
+        add_group<shape, kind>(d, stage.entry.data() + first, count, p, direction, sum, branches);
+    });
 }
 
 template <class Tag>

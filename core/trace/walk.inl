@@ -135,8 +135,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
                 const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
                 branches.begin(hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)), error);
             }
-            FieldValue<Tag> value =
-                evaluate(d, stage.entries(), threshold, p, direction, branches);
+            FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction, branches);
             V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
             if constexpr (has_weak) {
                 const M<Tag> close = hn::And(

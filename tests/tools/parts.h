@@ -24,8 +24,8 @@ inline Element element_of_part(const Scene& scene, const Field& field, std::size
         const SkeletonColumns c = field.columns(i);
         if (field.shape[i] == Shape::polygon) {
             std::vector<Vec3d> vertices;
-            PolygonSkeleton::for_vertices(
-                c, [&](const Vec3d& vertex) { vertices.push_back(vertex); });
+            PolygonSkeleton::for_vertices(c,
+                                          [&](const Vec3d& vertex) { vertices.push_back(vertex); });
             element.skeleton = PolygonSkeleton(std::move(vertices));
         } else {
             const auto k = [&](std::size_t at) {
@@ -33,9 +33,9 @@ inline Element element_of_part(const Scene& scene, const Field& field, std::size
             };
             const Vec3d k0 = k(curve_arc::at_k0), k1 = k(curve_arc::at_k1),
                         k2 = k(curve_arc::at_k2), k3 = k(curve_arc::at_k3);
-            const Vec3d odd = (1.0 / 3) * k1 - k3;
-            element.skeleton = CurveSkeleton({c.a + (k0 - k1 + k2 - k3), c.a + (k0 - k2 - odd),
-                                              c.a + (k0 - k2 + odd), c.a + (k0 + k1 + k2 + k3)});
+            const Vec3d even = k0 - (1.0 / 3) * k2, odd = (1.0 / 3) * k1 - k3;
+            element.skeleton = CurveSkeleton({c.a + (k0 - k1 + k2 - k3), c.a + (even - odd),
+                                              c.a + (even + odd), c.a + (k0 + k1 + k2 + k3)});
         }
         return element;
     }

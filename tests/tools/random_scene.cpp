@@ -32,9 +32,8 @@ PolygonSkeleton random_polygon(const Vec3d& first, Random& random) {
     const std::size_t count = 3 + random.below(6);
     std::vector<Vec3d> vertices;
     for (std::size_t i = 0; i < count; ++i) {
-        const double angle =
-            2 * 3.14159265 * (static_cast<double>(i) + random.uniform(0.1, 0.9)) /
-            static_cast<double>(count);
+        const double angle = 2 * 3.14159265 * (static_cast<double>(i) + random.uniform(0.1, 0.9)) /
+                             static_cast<double>(count);
         const double radius = random.uniform(0.3, 1.2);
         vertices.push_back(first + coarse(radius * std::cos(angle)) * e +
                            coarse(radius * std::sin(angle)) * f);
@@ -43,8 +42,8 @@ PolygonSkeleton random_polygon(const Vec3d& first, Random& random) {
 }
 
 // Its first place is that one, others are near it; some directions are along an axis.
-// Curves are as wild as four places can be, or `calm`: of a few arcs.
-Skeleton random_skeleton(Shape shape, const Vec3d& first, bool calm, Random& random) {
+// Some curves are as wild as four places can be, unless they are many; the others are of a few arcs.
+Skeleton random_skeleton(Shape shape, const Vec3d& first, bool are_many, Random& random) {
     Skeleton skeleton = skeleton_of(shape);
     if (auto* const chain = std::get_if<PolylineSkeleton>(&skeleton)) {
         chain->points.resize(2 + random.below(5));
@@ -57,7 +56,7 @@ Skeleton random_skeleton(Shape shape, const Vec3d& first, bool calm, Random& ran
     }
     if (auto* const curve = std::get_if<CurveSkeleton>(&skeleton)) {
         curve->control_points.resize(3 + random.below(2));
-        if (calm) {
+        if (random.chance(0.7) || are_many) {
             const Vec3d along = rounded_off(random.in_cube(0.5));
             for (std::size_t i = 0; i < curve->control_points.size(); ++i) {
                 curve->control_points[i] =
@@ -89,9 +88,8 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     Element element;
     const Vec3d first = rounded_off(random.in_cube(half));
     const auto shape = static_cast<Shape>(random.below(shape_count));
-    const bool calm = recipe.elements > 30 || random.chance(0.7);
-    element.skeleton =
-        random_skeleton(recipe.only ? recipe.only->shape : shape, first, calm, random);
+    element.skeleton = random_skeleton(recipe.only ? recipe.only->shape : shape, first,
+                                       recipe.elements > 30, random);
     const auto kernel = static_cast<KernelKind>(random.below(kernel_count));
     element.kernel = recipe.only ? recipe.only->kernel : kernel;
     element.strength = random.uniform(0.5, 1.5) * (random.chance(0.2) ? -1 : 1);

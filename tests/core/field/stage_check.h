@@ -55,8 +55,7 @@ Vec3<Real> away_from_arc(const Real* numbers, const Vec3<Real>& v) {
         return Vec3<Real>{numbers[k], numbers[k + 1], numbers[k + 2]};
     };
     const auto from = [&](Real x) {
-        return (v - vector(at_k0)) -
-               x * (vector(at_k1) + x * (vector(at_k2) + x * vector(at_k3)));
+        return (v - vector(at_k0)) - x * (vector(at_k1) + x * (vector(at_k2) + x * vector(at_k3)));
     };
     // The best of many, and between its neighbours by thirds.
     constexpr int places = 64;
@@ -74,7 +73,7 @@ Vec3<Real> away_from_arc(const Real* numbers, const Vec3<Real>& v) {
     }
     const Real between = (lo + hi) / 2;
     return dot(from(between), from(between)) < dot(from(best), from(best)) ? from(between)
-                                                                          : from(best);
+                                                                           : from(best);
 }
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
