@@ -42,8 +42,8 @@ PolygonSkeleton random_polygon(const Vec3d& first, Random& random) {
 }
 
 // Its first place is that one, others are near it; some directions are along an axis.
-// Some curves are as wild as four places can be, unless they are many; the others are of a few arcs.
-Skeleton random_skeleton(Shape shape, const Vec3d& first, bool are_many, Random& random) {
+// Some curves are as wild as four places can be, unless all are to be `calm`: of a few arcs.
+Skeleton random_skeleton(Shape shape, const Vec3d& first, bool calm, Random& random) {
     Skeleton skeleton = skeleton_of(shape);
     if (auto* const chain = std::get_if<PolylineSkeleton>(&skeleton)) {
         chain->points.resize(2 + random.below(5));
@@ -56,7 +56,7 @@ Skeleton random_skeleton(Shape shape, const Vec3d& first, bool are_many, Random&
     }
     if (auto* const curve = std::get_if<CurveSkeleton>(&skeleton)) {
         curve->control_points.resize(3 + random.below(2));
-        if (random.chance(0.7) || are_many) {
+        if (random.chance(0.7) || calm) {
             const Vec3d along = rounded_off(random.in_cube(0.5));
             for (std::size_t i = 0; i < curve->control_points.size(); ++i) {
                 curve->control_points[i] =
@@ -89,7 +89,7 @@ Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     const Vec3d first = rounded_off(random.in_cube(half));
     const auto shape = static_cast<Shape>(random.below(shape_count));
     element.skeleton = random_skeleton(recipe.only ? recipe.only->shape : shape, first,
-                                       recipe.elements > 30, random);
+                                       recipe.elements > 30 || !recipe.only, random);
     const auto kernel = static_cast<KernelKind>(random.below(kernel_count));
     element.kernel = recipe.only ? recipe.only->kernel : kernel;
     element.strength = random.uniform(0.5, 1.5) * (random.chance(0.2) ? -1 : 1);
