@@ -116,9 +116,10 @@ std::ptrdiff_t after(std::size_t i) { return static_cast<std::ptrdiff_t>(i) + 1;
 void insert_place(Element& element, std::size_t i) {
     for_places(element, [&](const auto&, std::vector<Vec3d>& places) {
         if (i >= places.size()) return;
-        const bool is_last = i + 1 == places.size();
+        const bool closes = std::holds_alternative<PolygonSkeleton>(element.skeleton);
+        const bool is_last = i + 1 == places.size() && !closes;
         const Vec3d& here = places[i];
-        const Vec3d& other = places[is_last ? i - 1 : i + 1];
+        const Vec3d& other = places[is_last ? i - 1 : (i + 1) % places.size()];
         const Vec3d place = is_last ? here + (here - other) : 0.5 * here + 0.5 * other;
         std::vector<double>& widths = element.widths;
         if (widths.size() == places.size()) {

@@ -23,6 +23,7 @@
 #include "app/panels/typed_number.h"
 #include "app/shape/shapes.h"
 #include "app/shape/widths.h"
+#include "core/scene/scene_fault.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -35,6 +36,14 @@ double step_in_scene(const ViewerState& state) {
         state.projection().length_of_pixel(state.view.camera.target) * state.scale;
     const double exponent = std::round(std::log10(length));
     return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
+}
+
+// What would leave a skeleton that no file could hold is refused, and changes nothing.
+template <class Change>
+void change_unless_faulty(Element& element, const Change& change) {
+    Element changed = element;
+    change(changed);
+    if (!find_fault(changed)) element = std::move(changed);
 }
 
 // The field of a member of the selected element's skeleton.
@@ -93,24 +102,30 @@ void draw_member(ViewerState& state, std::size_t element,
             ImGui::SameLine(0, px(state, 4));
             vector_fields(state, row_id, "Move point " + number + " of " + name, places[i], step,
                           [=](Scene& scene, const Vec3d& changed) {
-                              Element& to = scene.elements[element];
-                              (std::get<S>(to.skeleton).*member.value)[i] = changed;
+                              change_unless_faulty(scene.elements[element], [&](Element& to) {
+                                  (std::get<S>(to.skeleton).*member.value)[i] = changed;
+                              });
                           });
         }
     }
     ImGui::EndChild();
     const std::string number = std::to_string(current + 1);
     const float half = std::floor(0.5f * (field_width() - px(state, 4)));
-    if (text_button(state, id + ".insert", ("Insert after " + number).c_str(), half)) {
-        edit_scene(state, "Insert a point into " + name,
-                   [&](Scene& scene) { insert_place(scene.elements[element], current); });
+    if (text_button(state, id + ".insert", ("Insert after " + number).c_str(), half,
+                    places.size() < member.most)) {
+        edit_scene(state, "Insert a point into " + name, [&](Scene& scene) {
+            change_unless_faulty(scene.elements[element],
+                                 [&](Element& to) { insert_place(to, current); });
+        });
         ++current;
     }
     ImGui::SameLine(0, px(state, 4));
     if (text_button(state, id + ".remove", ("Remove " + number).c_str(), half,
                     places.size() > member.least)) {
-        edit_scene(state, "Remove point " + number + " of " + name,
-                   [&](Scene& scene) { remove_place(scene.elements[element], current); });
+        edit_scene(state, "Remove point " + number + " of " + name, [&](Scene& scene) {
+            change_unless_faulty(scene.elements[element],
+                                 [&](Element& to) { remove_place(to, current); });
+        });
     }
 }
 

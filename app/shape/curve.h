@@ -30,7 +30,7 @@ struct ShapeInHand<CurveSkeleton> {
 
     static CurveSkeleton added(const Vec3d& at, double size, int exponent) {
         constexpr std::array<std::array<double, 2>, 4> points = {
-            {{-1.5, -0.5}, {-0.5, 1.5}, {0.5, -1.5}, {1.5, 0.5}}};
+            {{-2, -0.5}, {-0.8, 0.9}, {0.8, 0.9}, {2, -0.5}}};
         std::vector<Vec3d> control_points;
         for (const auto& [x, y] : points) {
             control_points.push_back(
@@ -55,16 +55,43 @@ struct ShapeInHand<CurveSkeleton> {
     }
 
     static SkeletonLines lines(const Element& element) { return {{places(element, line_pieces)}}; }
+    // Around the balls as they are seen: along one side, about the end, back along the other. (A ball off the
+    // middle of the picture is seen a little longer than it is wide.)
     static std::vector<PictureLine> outline(const Projection& view, const Element& element,
                                             double widths) {
-        std::vector<PictureLine> all;
-        const std::vector<Vec3d> chain = places(element, outline_pieces);
-        const double radius = widths * element.width;
-        for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-            const std::array balls{Ball{chain[i], radius}, Ball{chain[i + 1], radius}};
-            for (PictureLine& line : hull_outline(view, balls)) all.push_back(std::move(line));
+        constexpr int half_turn = 16;
+        struct Seen {
+            WindowPoint at;
+            double radius;
+        };
+        std::vector<Seen> seen;
+        for (const Vec3d& place : places(element, line_pieces)) {
+            const auto at = view.project(place);
+            const double pixel = view.length_of_pixel(place);
+            if (!at || !(pixel > 0)) return {};
+            seen.push_back({*at, widths * element.width / pixel});
         }
-        return all;
+        // The direction of the way at a place, in the picture.
+        const auto angle = [&](std::size_t i) {
+            const WindowPoint& from = seen[i > 0 ? i - 1 : 0].at;
+            const WindowPoint& to = seen[std::min(i + 1, seen.size() - 1)].at;
+            return std::atan2(to.y - from.y, to.x - from.x);
+        };
+        PictureLine line;
+        const auto add = [&](std::size_t i, double turned) {
+            WindowPoint point = seen[i].at;
+            point.x += static_cast<decltype(point.x)>(seen[i].radius * std::cos(turned));
+            point.y += static_cast<decltype(point.y)>(seen[i].radius * std::sin(turned));
+            line.push_back(point);
+        };
+        constexpr double right = 1.5707963267948966;
+        const std::size_t last = seen.size() - 1;
+        for (std::size_t i = 0; i <= last; ++i) add(i, angle(i) - right);
+        for (int k = 1; k < half_turn; ++k)
+            add(last, angle(last) - right + 2 * right * k / half_turn);
+        for (std::size_t i = last + 1; i-- > 0;) add(i, angle(i) + right);
+        for (int k = 1; k <= half_turn; ++k) add(0, angle(0) + right + 2 * right * k / half_turn);
+        return {std::move(line)};
     }
     // A curve is within an eighth of the greatest |c''| of its chord, over the square of the pieces.
     static void cover(const Element& element, double widths, std::vector<Ball>& balls) {
