@@ -87,7 +87,9 @@ Skeleton random_skeleton(Shape shape, const Vec3d& first, bool calm, Random& ran
 Element random_element(const SceneRecipe& recipe, Random& random, double half) {
     Element element;
     const Vec3d first = rounded_off(random.in_cube(half));
-    const auto shape = static_cast<Shape>(random.below(shape_count));
+    auto shape = static_cast<Shape>(random.below(shape_count));
+    // Of a crowd each curve would be many parts.
+    if (recipe.elements > 30 && shape == Shape::curve) shape = Shape::polyline;
     element.skeleton = random_skeleton(recipe.only ? recipe.only->shape : shape, first,
                                        recipe.elements > 30 || !recipe.only, random);
     const auto kernel = static_cast<KernelKind>(random.below(kernel_count));
