@@ -50,7 +50,4 @@ struct ExtentWork {
 [[nodiscard]] std::optional<Extent> extent_of_solid(const Field& field, const Frustum& frustum,
                                                     ExtentWork& work);
 
-// More than what a few roundings of lengths can cost, relative to the largest of them.
-inline constexpr double framing_slack = 0x1p-44;
-
 }  // namespace ivory

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/math/direction.h"
+#include "core/render/cell_bounds.h"
 #include "core/render/extent.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_fault.h"

@@ -20,6 +20,7 @@
 #include "core/shape/circle_along_ray.h"
 #include "core/shape/convex_along_ray.h"
 #include "core/shape/curve_along_ray.h"
+#include "core/shape/skeleton_values.h"
 #include "core/shape/taper_along_ray.h"
 
 namespace ivory {
@@ -200,4 +201,26 @@ inline bool set_point(SkeletonAlongRay& e, const Relative& r, double extra_error
 }
 
 }  // namespace along_ray_detail
+
+// A ball that holds a skeleton, along a ray, in widths; whether its numbers are within the lemma's range.
+struct BallAlongRay {
+    MovingSquare middle;
+    double radius;
+    bool fits;
+
+    BallAlongRay(const Ball& ball, double width, const SeenFrom& ray) {
+        using namespace along_ray_detail;
+        const Relative from = relative_to(ball.center, width, ray.origin, ray.direction);
+        middle = from_point(from, ray.span);
+        radius = ball.radius / width * (1 + 4 * u) + 1e-300;
+        fits = usable(middle.kappa, from.offset_norm + middle.rho + radius, mag(ray.span)) &&
+               width > 1e-75 && width < 1e75;
+    }
+    // Outside of it s > cut.
+    [[nodiscard]] Interval<double> active(double cut) const {
+        using namespace along_ray_detail;
+        const double reach = (std::sqrt(cut) + radius) * (1 + 16 * u);
+        return sublevel(middle, reach * reach * (1 + 4 * u));
+    }
+};
 }  // namespace ivory

@@ -146,7 +146,7 @@ struct CircleSkeleton {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return sqr(less(sqrt(natural::square(e.across, t)), e.radius)) + sqr(linear(e.along, t));
     }
-    // The paper's 3-3: d^2 = r^2 + |C - P|^2 - 2 r |P - C - (N.(P - C)) N|, expanded as printed.
+    // As the paper prints it, 3-3: d^2 = r^2 + |C - P|^2 - 2 r |P - C - (N.(P - C)) N|, expanded as printed.
     template <class Number>
     static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
         const Number whole = natural::square(e.from, t) + Number{quick::sqr(e.radius)};

@@ -41,12 +41,7 @@ struct CurveSkeleton {
     static constexpr bool is_joined = true, has_numbers = true, has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 
-    // Of the box around its control points.
-    [[nodiscard]] Vec3d middle() const {
-        Box3 box;
-        for (const Vec3d& point : control_points) box.include({point, point});
-        return 0.5 * box.lo + 0.5 * box.hi;
-    }
+    [[nodiscard]] Vec3d middle() const { return middle_of(control_points); }
 
     [[nodiscard]] std::vector<SkeletonPart> split() const { return curve_arcs(control_points); }
     static std::size_t size_of(const SkeletonColumns&) { return curve_arc::most_numbers; }
@@ -57,14 +52,7 @@ struct CurveSkeleton {
     static Surroundings surroundings(const SkeletonColumns& c) {
         return {box_of_arc(c), off_by(c)};
     }
-    static Box3 box(const SkeletonColumns& c) {
-        Box3 box = box_of_arc(c);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            box.lo[axis] = sub_down(box.lo[axis], off_by(c));
-            box.hi[axis] = add_up(box.hi[axis], off_by(c));
-        }
-        return box;
-    }
+    static Box3 box(const SkeletonColumns& c) { return widened(box_of_arc(c), off_by(c)); }
     static Ball ball(const SkeletonColumns& c) {
         using namespace curve_arc;
         return {c.a + vector(c, at_k0), (c.numbers[at_radius] + off_by(c)) * (1 + 0x1p-40)};
@@ -97,19 +85,11 @@ struct CurveSkeleton {
 
     static bool along_ray(const SkeletonColumns& c, double width, const SeenFrom& ray,
                           SkeletonAlongRay& e) {
-        using namespace along_ray_detail;
-        const Ball around = ball(c);
-        const Relative from = relative_to(around.center, width, ray.origin, ray.direction);
-        const MovingSquare square = from_point(from, ray.span);
-        const double size = around.radius / width;
-        if (!usable(square.kappa, from.offset_norm + square.rho + size, mag(ray.span)) ||
-            !(width > 1e-75 && width < 1e75 && c.parameter < 1e75)) {
-            return false;
-        }
-        e.form = CurveAlongRay{
-            c.a, ray.origin, ray.direction, width, c.numbers, square, size * (1 + 4 * u) + 1e-300};
-        const double reach = (std::sqrt(ray.cut) + size) * (1 + 16 * u);
-        e.active = sublevel(square, reach * reach * (1 + 4 * u));
+        const BallAlongRay around(ball(c), width, ray);
+        if (!around.fits) return false;
+        e.form = CurveAlongRay{c.a,       ray.origin,    ray.direction, width,
+                               c.numbers, around.middle, around.radius};
+        e.active = around.active(ray.cut);
         return true;
     }
 
@@ -122,10 +102,6 @@ struct CurveSkeleton {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return natural::as_number(
             t, [&](const natural::Span& x) { return natural::curve_arc_over(e, x); });
-    }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
     }
 
   private:
@@ -282,11 +258,12 @@ struct ShapeLanes<CurveSkeleton> {
     }
 
     // At most so much is (best^2 - d^2), best from one of x = -1, 0, 1 or nearer: where D' = 0 the next of
-    // these is half as far away as they are apart, and |D''| / 2 <= |c'|^2 + d |c''|; else an end is the
-    // nearest.
+    // these is half as far away as they are apart, and on the way there |D''| / 2 <= |c'|^2 + (d + |c'| / 2)
+    // |c''|; else an end is the nearest.
     template <class Tag>
     static HWY_INLINE V<Tag> excess(Tag d, V<Tag> fastest, V<Tag> turn, V<Tag> distance) {
-        return hn::Mul(hn::MulAdd(distance, turn, square_of(fastest)),
+        const V<Tag> farthest = hn::MulAdd(fastest, constant(d, 0.5), distance);
+        return hn::Mul(hn::MulAdd(farthest, turn, square_of(fastest)),
                        constant(d, 0.25 * (1 + 0x1p-10)));
     }
 
@@ -450,8 +427,10 @@ struct ShapeLanes<CurveSkeleton> {
             hn::Mul(fastest, hn::IfThenElseZero(hn::Or(is_smooth, is_kinked), steps));
         const V<Tag> own = hn::MulAdd(c(4 * u), all, hn::Mul(c(16 * u), fastest));
         const V<Tag> of_place = hn::Mul(hn::Mul(c(16 * u), all), steeper);
+        // excess / (2 d) <= |c''| (0.16 F + 0.13 + 0.06 F^1/2), F the square of the greatest |c'| over the
+        // least, which |c''| is less than 0.7 of
         const V<Tag> of_kink =
-            hn::MulAdd(hn::Mul(turn, c(0.18)), hn::Add(hn::Div(square_of(fastest), square), one),
+            hn::MulAdd(hn::Mul(turn, c(0.24)), hn::Add(hn::Div(square_of(fastest), square), one),
                        hn::Mul(all, c(0.5 * share)));
         const V<Tag> of_point = hn::IfThenElseZero(is_point, hn::Mul(c(2), e.number(at_radius)));
         const V<Tag> value = hn::Add(hn::Add(hn::Add(eta, own), hn::Add(of_place, of_steps)),

@@ -42,7 +42,7 @@ CurveAlongRay::At CurveAlongRay::at(double t) const {
             16 * u * u * (std::abs(origin[axis] - a[axis]) + std::abs(t * direction[axis])) +
             1e-300;
         const double k0 = numbers[at_k0 + axis];
-        const double k0_error = 2 * u * std::abs(k0) + 1e-300;
+        const double k0_error = 2 * u * std::abs(k0) + numbers[at_lost];
         v[axis] =
             quick::sub(Span(from_a - error, from_a + error), Span(k0 - k0_error, k0 + k0_error));
     }

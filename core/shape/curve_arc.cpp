@@ -13,13 +13,16 @@ namespace {
 using Span = Interval<double>;
 using Vector = Vec3<Span>;
 
-// Numbers are rounded from twice the precision: within u of themselves.
-Span about(double x) {
-    const double error = 0x1p-52 * std::abs(x) + 0x1p-1000;
+// Numbers are rounded from twice the precision: within u of themselves, and what that has lost.
+Span about(double x, double lost) {
+    const double error = 0x1p-52 * std::abs(x) + lost;
     return {x - error, x + error};
 }
+Span length_at(std::span<const double> numbers, std::size_t k) {
+    return about(numbers[k], numbers[curve_arc::at_lost]);
+}
 Vector vector_at(std::span<const double> numbers, std::size_t k) {
-    return {about(numbers[k]), about(numbers[k + 1]), about(numbers[k + 2])};
+    return {length_at(numbers, k), length_at(numbers, k + 1), length_at(numbers, k + 2)};
 }
 Span inner(const Vector& a, const Vector& b) {
     return quick::add(quick::add(quick::mul(a.x, b.x), quick::mul(a.y, b.y)), quick::mul(a.z, b.z));
@@ -35,7 +38,9 @@ class Foot {
         using namespace curve_arc;
         const Vector k1 = vector_at(numbers, at_k1), k2 = vector_at(numbers, at_k2),
                      k3 = vector_at(numbers, at_k3);
-        const auto number = [&](std::size_t k) { return about(numbers[at_g + k]); };
+        const auto number = [&](std::size_t k) {
+            return about(numbers[at_g + k], numbers[at_lost_square]);
+        };
         const auto minus = [](const Span& x) { return Span(-x.hi, -x.lo); };
         a_ = {inner(v, k1),
               quick::sub(quick::scale(2, inner(v, k2)), number(0)),
@@ -56,17 +61,28 @@ class Foot {
         }
         return sum;
     }
-    // A zero of g between a and b, where it falls, or the end where it would be; to nearest.
+    // The zero of g between a and b, where it falls, or the end where it would be; to nearest. Newton's
+    // steps, or halves where these lead out of what is left.
     [[nodiscard]] double zero(double a, double b) const {
         std::array<double, 6> c{};
         for (std::size_t k = 0; k < 6; ++k) c[k] = midpoint(a_[k]);
-        double x = 0.5 * a + 0.5 * b;
-        for (int step = 0; step < 12; ++step) {
-            double g = c[5], slope = 5 * c[5];
+        const auto value = [&](double x) {
+            double g = c[5];
             for (std::size_t k = 5; k-- > 0;) g = c[k] + x * g;
+            return g;
+        };
+        if (value(a) <= 0) return a;
+        if (value(b) >= 0) return b;
+        double x = 0.5 * (a + b);
+        constexpr int most_steps = 60;
+        for (int step = 0; step < most_steps; ++step) {
+            const double g = value(x);
+            double slope = 5 * c[5];
             for (std::size_t k = 5; k-- > 1;) slope = static_cast<double>(k) * c[k] + x * slope;
-            const double next = slope < 0 ? std::clamp(x - g / slope, a, b) : (g > 0 ? b : a);
-            if (next == x) break;
+            (g > 0 ? a : b) = x;
+            const double newton = x - g / slope;
+            const double next = newton > a && newton < b ? newton : 0.5 * (a + b);
+            if (std::abs(next - x) <= 0x1p-52) return next;
             x = next;
         }
         return x;
@@ -143,6 +159,9 @@ std::vector<double> numbers_of(const Cubic& c, const ArcShape& shape, int expone
     square(shape.speeding);
     length(shape.third);
     length(shape.radius);
+    // No coefficient is larger than some dozen sizes, near 1.
+    length(0x1p-90);
+    square(0x1p-86);
     return numbers;
 }
 
@@ -151,9 +170,9 @@ std::vector<double> numbers_of(const Cubic& c, const ArcShape& shape, int expone
 Vec3<Span> curve_arc::away_at(std::span<const double> numbers, const Vector& v, const Span& x) {
     Vector away;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        Span sum = about(numbers[at_k3 + axis]);
-        sum = quick::add(about(numbers[at_k2 + axis]), quick::mul(x, sum));
-        sum = quick::add(about(numbers[at_k1 + axis]), quick::mul(x, sum));
+        Span sum = length_at(numbers, at_k3 + axis);
+        sum = quick::add(length_at(numbers, at_k2 + axis), quick::mul(x, sum));
+        sum = quick::add(length_at(numbers, at_k1 + axis), quick::mul(x, sum));
         away[axis] = quick::sub(v[axis], quick::mul(x, sum));
     }
     return away;

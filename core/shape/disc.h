@@ -90,10 +90,6 @@ struct DiscSkeleton {
         return sqr(at_least_0(less(sqrt(natural::square(e.across, t)), e.radius))) +
                sqr(linear(e.along, t));
     }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
-    }
 };
 
 }  // namespace ivory

@@ -43,10 +43,6 @@ struct JoinedParts {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return Part::square(e, t);
     }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return Part::square_as_printed(e, t);
-    }
 };
 
 }  // namespace ivory

@@ -61,10 +61,6 @@ struct PointSkeleton {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return natural::square(e.from, t);
     }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
-    }
 };
 
 }  // namespace ivory

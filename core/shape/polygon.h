@@ -44,12 +44,7 @@ struct PolygonSkeleton {
     static constexpr bool is_joined = true, has_numbers = true, has_axis = true;
     static constexpr int m_power = 0, parameter_power = 1;
 
-    // Of the box around its vertices.
-    [[nodiscard]] Vec3d middle() const {
-        Box3 box;
-        for (const Vec3d& vertex : vertices) box.include({vertex, vertex});
-        return 0.5 * box.lo + 0.5 * box.hi;
-    }
+    [[nodiscard]] Vec3d middle() const { return middle_of(vertices); }
 
     [[nodiscard]] std::vector<SkeletonPart> split() const { return convex_parts(vertices); }
     static std::size_t size_of(const SkeletonColumns& c) { return convex_part::size_of(c.numbers); }
@@ -60,14 +55,7 @@ struct PolygonSkeleton {
     static Surroundings surroundings(const SkeletonColumns& c) {
         return {box_of_vertices(c), off_by(c)};
     }
-    static Box3 box(const SkeletonColumns& c) {
-        Box3 box = box_of_vertices(c);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            box.lo[axis] = sub_down(box.lo[axis], off_by(c));
-            box.hi[axis] = add_up(box.hi[axis], off_by(c));
-        }
-        return box;
-    }
+    static Box3 box(const SkeletonColumns& c) { return widened(box_of_vertices(c), off_by(c)); }
     static Ball ball(const SkeletonColumns& c) {
         using namespace convex_part;
         return {in_space(c, c.numbers[at_center], c.numbers[at_center + 1]),
@@ -98,18 +86,10 @@ struct PolygonSkeleton {
 
     static bool along_ray(const SkeletonColumns& c, double width, const SeenFrom& ray,
                           SkeletonAlongRay& e) {
-        using namespace along_ray_detail;
-        const Ball around = ball(c);
-        const Relative from = relative_to(around.center, width, ray.origin, ray.direction);
-        const MovingSquare square = from_point(from, ray.span);
-        const double size = around.radius / width;
-        if (!usable(square.kappa, from.offset_norm + square.rho + size, mag(ray.span)) ||
-            !(width > 1e-75 && width < 1e75 && c.parameter < 1e75)) {
-            return false;
-        }
+        const BallAlongRay around(ball(c), width, ray);
+        if (!around.fits) return false;
         e.form = ConvexAlongRay{c.a, ray.origin, ray.direction, width, c.parameter, c.numbers};
-        const double reach = (std::sqrt(ray.cut) + size) * (1 + 16 * u);
-        e.active = sublevel(square, reach * reach * (1 + 4 * u));
+        e.active = around.active(ray.cut);
         return true;
     }
 
@@ -123,10 +103,6 @@ struct PolygonSkeleton {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return natural::as_number(
             t, [&](const natural::Span& x) { return natural::convex_part_over(e, x); });
-    }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
     }
 
     // visit(place) of the part's.

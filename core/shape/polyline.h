@@ -33,12 +33,7 @@ struct PolylineSkeleton : JoinedParts<SegmentSkeleton> {
     static constexpr bool may_taper = true;
     [[nodiscard]] std::size_t width_places() const { return points.size(); }
 
-    // Of the box around its points.
-    [[nodiscard]] Vec3d middle() const {
-        Box3 box;
-        for (const Vec3d& point : points) box.include({point, point});
-        return 0.5 * box.lo + 0.5 * box.hi;
-    }
+    [[nodiscard]] Vec3d middle() const { return middle_of(points); }
 
     [[nodiscard]] std::size_t parts() const { return points.size() - 1; }
     [[nodiscard]] SegmentSkeleton segment(std::size_t part) const {

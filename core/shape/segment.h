@@ -175,10 +175,6 @@ struct SegmentSkeleton {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return segment_square(e, t);  // as each number type has it
     }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
-    }
 };
 
 }  // namespace ivory

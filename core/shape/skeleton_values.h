@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/interval/rounding.h"
 #include "core/math/box3.h"
 #include "core/math/vec3.h"
 
@@ -107,6 +108,21 @@ struct Ball {
     Vec3d center;
     double radius = 0;
 };
+
+// Of the box around places.
+[[nodiscard]] inline Vec3d middle_of(std::span<const Vec3d> places) {
+    Box3 box;
+    for (const Vec3d& place : places) box.include({place, place});
+    return 0.5 * box.lo + 0.5 * box.hi;
+}
+// The box of all that is off by so much at the most, in each direction.
+[[nodiscard]] inline Box3 widened(Box3 box, double by) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.lo[axis] = sub_down(box.lo[axis], by);
+        box.hi[axis] = add_up(box.hi[axis], by);
+    }
+    return box;
+}
 
 // From the skeleton's nearest point to p, in units of the element's width, and the square s of its
 // length; half the gradient of s is that vector.

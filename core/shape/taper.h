@@ -71,19 +71,14 @@ struct TaperedSegment {
 
     static bool along_ray(const SkeletonColumns& c, double, const SeenFrom& ray,
                           SkeletonAlongRay& e) {
-        using namespace along_ray_detail;
         auto& taper = e.form.emplace<TaperAlongRay>();
         if (!taper.see(ray.origin, ray.direction, c.a, c.b, c.width_a, c.width_b, ray.span)) {
             return false;
         }
         // q is at least what it is for the ball around the segment, all of it as wide as its widest.
-        const Ball around = ball(c);
-        const double widest = std::max(c.width_a, c.width_b);
-        const Relative from = relative_to(around.center, widest, ray.origin, ray.direction);
-        const MovingSquare square = from_point(from, ray.span);
-        if (!usable(square.kappa, from.offset_norm + square.rho, mag(ray.span))) return false;
-        const double reach = (std::sqrt(ray.cut) + around.radius / widest) * (1 + 16 * u);
-        e.active = sublevel(square, reach * reach * (1 + 4 * u));
+        const BallAlongRay around(ball(c), std::max(c.width_a, c.width_b), ray);
+        if (!around.fits) return false;
+        e.active = around.active(ray.cut);
         return true;
     }
 
@@ -97,10 +92,6 @@ struct TaperedSegment {
     static Number square(const natural::RaySkeleton& e, const Number& t) {
         return natural::as_number(
             t, [&](const natural::Span& x) { return natural::taper_over(e, x); });
-    }
-    template <class Number>
-    static Number square_as_printed(const natural::RaySkeleton& e, const Number& t) {
-        return square(e, t);
     }
 };
 

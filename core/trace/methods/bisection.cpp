@@ -19,7 +19,13 @@ using natural::Span;
 // The distance as the paper prints it.
 Range printed_square(const RayElement& e, const Range& t) {
     if (e.collapsed) return square(e.from, t);
-    return with_field_shape(e.shape, [&]<class S>() { return S::square_as_printed(e, t); });
+    return with_field_shape(e.shape, [&]<class S>() {
+        // of a circle
+        if constexpr (requires { S::square_as_printed(e, t); })
+            return S::square_as_printed(e, t);
+        else
+            return S::square(e, t);
+    });
 }
 
 // The sum of squares of intervals that know nothing of each other, as the paper has it, with the ray
