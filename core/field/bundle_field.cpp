@@ -47,12 +47,11 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     stop_ = stop;
     is_stopped_ = false;
     stretches_ = stretches_ended_ = 0;
-    origin_ = bundle.origin;
-    if (!field.compact || !(bundle.spread <= 0.5)) return false;
+    if (!field.compact || !(bundle.spread <= 0.5 && bundle.radius < 1e30)) return false;
     const Vec3d& o = bundle.origin;
     if (!(std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30)) return false;
 
-    home_ = {.axis = bundle.axis, .spread = bundle.spread};
+    home_ = whole_of(bundle);
     scale_ = field.scale;
     threshold_ = field.threshold * scale_;
     unit_ = field.unit;
@@ -65,7 +64,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
 
 // The t at which rays of the bundle may be in the field's box.
 Interval<double> BundleField::span_of(const Bundle& bundle) const {
-    // Every ray is in the box at t only if the axis is in the box made larger by t spread.
+    // Every ray is in the box at t only if the axis is in the box made larger by radius + t spread.
     const Vec3d& o = bundle.origin;
     double farthest = 0;
     Box3 box = field_->box;
@@ -73,9 +72,9 @@ Interval<double> BundleField::span_of(const Bundle& bundle) const {
         const double side = std::max(std::abs(box.lo[k] - o[k]), std::abs(box.hi[k] - o[k]));
         farthest += side * side;
     }
-    farthest = std::sqrt(farthest) * more;
+    farthest = (std::sqrt(farthest) + bundle.radius) * more;
     const double spread = bundle.spread * more + 0x1p-49;
-    const double aside = farthest * spread * more + farthest * margin;
+    const double aside = farthest * spread * more + farthest * margin + bundle.radius * more;
     for (std::size_t k = 0; k < 3; ++k) {
         box.lo[k] -= aside + std::abs(box.lo[k]) * margin;
         box.hi[k] += aside + std::abs(box.hi[k]) * margin;
@@ -100,19 +99,22 @@ void BundleField::take_list(const ElementList& list, Bounded& bounded) const {
 }
 
 Stretch BundleField::stretch(const BundlePart& part, double t0, double t1) const {
-    return {origin_, part.axis, part.spread * more + 0x1p-49, t0, t1};
+    return {part.origin, part.axis, part.spread * more + 0x1p-49, part.radius * more, t0, t1};
 }
 
-// (2) of bundle.h: the part's axis at t is middle (part's axis - axis) + (t - middle) part's axis
-// away from M.
+// (2) of bundle_field.h: the part's axis at t is (part's origin - origin) + middle (part's axis - axis)
+// + (t - middle) part's axis away from M.
 LocalStretch BundleField::local_stretch(const BundlePart& part, double middle, double t0,
                                         double t1) const {
     const Vec3d& axis = home_.axis;
     const double per_unit = 1 / unit_;
+    const Vec3d aside = part.origin - home_.origin;
     return {part.axis,
-            {middle * (part.axis.x - axis.x) * per_unit, middle * (part.axis.y - axis.y) * per_unit,
-             middle * (part.axis.z - axis.z) * per_unit},
+            {(middle * (part.axis.x - axis.x) + aside.x) * per_unit,
+             (middle * (part.axis.y - axis.y) + aside.y) * per_unit,
+             (middle * (part.axis.z - axis.z) + aside.z) * per_unit},
             part.spread * more + 0x1p-49,
+            part.radius * per_unit * more,
             (t0 - middle) * per_unit,
             (t1 - middle) * per_unit,
             middle * per_unit};
@@ -246,6 +248,7 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.begin = t0;
     w.end = t1;
     w.axis = part.axis;
+    w.origin = part.origin;
     w.middle = 0.5 * (t0 + t1);
     const auto tau = [&](double t) { return static_cast<float>((t - w.middle) / unit_); };
     w.tau_begin = tau(t0) * (1 + 0x1p-22f);  // negative
@@ -335,6 +338,7 @@ void BundleField::take_opened(const Bounded& bounded, double float_cut, Window& 
     w.middle = window_.middle;
     w.end = window_.end;
     w.axis = window_.axis;
+    w.origin = window_.origin;
     w.rise = bounded.rise;
     w.fall = bounded.fall;
     complete(bounded, opened_part_, opened_on_, float_cut, w);
@@ -373,17 +377,18 @@ const Window& BundleField::full_mixed() {
     return full_mixed_;
 }
 
-const Window& BundleField::about_root(const Vec3d& direction, double t) {
+const Window& BundleField::about_root(const Vec3d& origin, const Vec3d& direction, double t) {
     full_mixed();
     const Bounded& parent = full_bounded_;
     Bounded& here = about_root_bounded_;
     Window& w = about_root_;
-    const BundlePart ray{.axis = direction};
+    const BundlePart ray{.axis = direction, .origin = origin};
     const double reach = about_root_reach * least_width_;
     w.begin = std::max(t - reach, window_.begin);
     w.end = std::min(t + reach, window_.end);
     w.middle = 0.5 * (w.begin + w.end);
     w.axis = direction;
+    w.origin = origin;
     w.compensated = true;
     // The places are relative to the window's middle.
     const double pad = pad_of(window_.begin, window_.end);

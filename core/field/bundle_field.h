@@ -2,8 +2,8 @@
 // found once and shared by all of them. Which stretches there are, and which of them become windows,
 // is the search's business (core/trace/descent.h).
 //
-// For every ray origin + t d of the bundle, |d - axis| <= spread: so its point at t lies within
-// t spread of the axis' point. The distance D to any closed set obeys D^2(x) = |x|^2 + (an infimum
+// The point at t of a ray of the bundle lies within radius + t spread of the axis' point
+// (core/field/bundle.h). The distance D to any closed set obeys D^2(x) = |x|^2 + (an infimum
 // of affine functions of x): along a line D^2 - t^2 is concave. Hence, with L = end - begin and
 // y = (t - begin) / L,
 //     D^2(t) >= (1 - y) D^2(begin) + y D^2(end) - y (1 - y) L^2                               (1)
@@ -22,7 +22,8 @@
 //
 // Places are relative to the middle of the window on the axis, so that the digits are spent where
 // the surface is, however far the origin: with M = origin + middle axis,
-//     p(t) - M = middle (d - axis) + (t - middle) d,    c - M by core/math/offset.h.            (2)
+//     p(t) - M = (o - origin) + middle (d - axis) + (t - middle) d,                              (2)
+//     c - M by core/math/offset.h.
 // Lengths in the float stage are in units of `unit`, a power of two.
 #pragma once
 
@@ -66,7 +67,7 @@ class BundleField {
     // may be called.
     bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
                bool skips_windows, Cancellation* stop);
-    // Places in float are measured on another bundle's axis, of the same origin.
+    // Places in float are measured on another bundle's axis.
     void measure_on(const BundlePart& home) { home_ = home; }
 
     // The t outside of which every ray of the bundle is outside of the field's box, and so f < 0;
@@ -101,7 +102,7 @@ class BundleField {
 
     // Likewise a piece of that window about t, for one of its rays alone: rounding is bounded there
     // by what the field is there. Good until the next one.
-    const Window& about_root(const Vec3d& direction, double t);
+    const Window& about_root(const Vec3d& origin, const Vec3d& direction, double t);
 
     // Float cannot name the ends of a stretch: what is bounded is so much longer.
     static double pad_of(double t0, double t1) { return 0x1p-20 * (t1 - t0); }
@@ -137,7 +138,6 @@ class BundleField {
     void take_opened(const Bounded& bounded, double float_cut, Window& window);
 
     const Field* field_ = nullptr;
-    Vec3d origin_;
     BundlePart home_;
     Bounded list_;
     ActiveElements members_;  // of clusters, or of a window with a fine stage

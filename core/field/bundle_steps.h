@@ -18,18 +18,19 @@ namespace ivory {
 
 struct Window;
 
-// All points origin + t d of a bundle's rays (core/field/bundle.h) with begin <= t <= end.
+// All points o + t d of a bundle's rays (core/field/bundle.h) with begin <= t <= end.
 struct Stretch {
     Vec3d origin, axis;
     double spread = 0;  // >= |d - axis|
+    double radius = 0;  // >= |o - origin|
     double begin = 0, end = 0;
 };
 
 // The same in units of some length, relative to the place at t = t_offset on the bundle's axis: the
-// points base + tau axis, and what is at most spread (tau + t_offset) away from them.
+// points base + tau axis, and what is at most radius + spread (tau + t_offset) away from them.
 struct LocalStretch {
     Vec3d axis, base;
-    double spread = 0;
+    double spread = 0, radius = 0;
     double begin = 0, end = 0;  // tau
     double t_offset = 0;
 };

@@ -21,8 +21,8 @@ namespace HWY_NAMESPACE {
 namespace {
 
 // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most H, (2)
-// costs 7 u H for p (d - axis, the product; t - middle, d, the product; the sum), 2 u |c - M| and
-// u^2 of its terms for c, and u (H + |c - M|) the difference. What finding the nearest point adds is
+// costs 7 u H for p (d - axis, the product; o - origin; t - middle, d, the product; the sums),
+// 2 u |c - M| and u^2 of its terms for c, and u (H + |c - M|) the difference. What finding the nearest point adds is
 // the shape's.
 template <Shape shape, class Tag>
 HWY_INLINE EntryErrors<Tag> etas(Tag d, const Entering& on, const Seen<Tag, shape>& e,
@@ -328,7 +328,7 @@ template <class Real>
 Entering entering(const Stretch& s, double unit) {
     return {.u = sizeof(Real) == sizeof(float) ? 0x1p-24 : 0x1p-53,
             .unit = unit,
-            .H = 0.5 * (s.end - s.begin) * more + s.end * s.spread * more,
+            .H = 0.5 * (s.end - s.begin) * more + s.end * s.spread * more + s.radius * more,
             .end = s.end,
             .place_error = 0,
             .least_rho = std::sqrt(double{least_square<Real>}) * unit * more};
@@ -373,13 +373,13 @@ StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretc
         std::sqrt(double{from.x} * double{from.x} + double{from.y} * double{from.y} +
                   double{from.z} * double{from.z});
     const double last = (stretch.t_offset + stretch.end) * more;
-    const Entering on{
-        .u = 0x1p-24,
-        .unit = 1,
-        .H = 0.5 * (stretch.end - stretch.begin) * more + last * stretch.spread * more,
-        .end = last,
-        .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
-        .least_rho = std::sqrt(double{least_square<float>}) * more};
+    const Entering on{.u = 0x1p-24,
+                      .unit = 1,
+                      .H = 0.5 * (stretch.end - stretch.begin) * more +
+                           last * stretch.spread * more + stretch.radius * more,
+                      .end = last,
+                      .place_error = 0x1p-23 * double{near.magnitude} + 0x1.1p-23 * size,
+                      .least_rho = std::sqrt(double{least_square<float>}) * more};
     GroupStarts none;
     GroupStarts& starts = strong.others != nullptr ? strong.others->first : none;
     starts.clear();

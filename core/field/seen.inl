@@ -29,7 +29,7 @@ template <Shape shape>
 inline constexpr bool numbered = SkeletonOf<shape>::has_numbers;
 
 HWY_INLINE Reach<double> reach_of(const Stretch& s) {
-    return {s.axis, {}, s.begin, s.end, s.spread, 0, s.end};
+    return {s.axis, {}, s.begin, s.end, s.spread, s.radius, 0, s.end};
 }
 
 HWY_INLINE Reach<float> reach_of(const LocalStretch& s) {
@@ -44,6 +44,7 @@ HWY_INLINE Reach<float> reach_of(const LocalStretch& s) {
             static_cast<float>(s.begin),
             static_cast<float>(s.end),
             static_cast<float>(s.spread * (1 + 0x1p-22)),
+            static_cast<float>(s.radius * (1 + 0x1p-22)),
             static_cast<float>(s.t_offset * (1 + 0x1p-22)),
             static_cast<float>(magnitude * (1 + 0x1p-22))};
 }

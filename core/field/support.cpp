@@ -36,7 +36,7 @@ namespace {
 // The bounds of core/field/bundle.h hold on the cone.
 bool is_bounded(const Field& field, const Cone& cone) {
     const Vec3d& o = cone.apex;
-    return field.compact && spread_of(cone) <= 0.5 &&
+    return field.compact && spread_of(cone) <= 0.5 && cone.radius < 1e30 &&
            std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30;
 }
 
@@ -48,8 +48,10 @@ Stretch all_of(const Field& field, const Cone& cone, const Interval<double>& par
         far += std::max(std::abs(field.skeletons.lo[k] - cone.apex[k]),
                         std::abs(field.skeletons.hi[k] - cone.apex[k]));
     }
-    return {cone.apex, unit(cone.axis), spread_of(cone), part.lo,
-            std::max(part.lo, std::min(part.hi, far * (1 + 0x1p-46)))};
+    return {
+        cone.apex,       unit(cone.axis),
+        spread_of(cone), cone.radius,
+        part.lo,         std::max(part.lo, std::min(part.hi, (far + cone.radius) * (1 + 0x1p-46)))};
 }
 
 // Each element is dropped once, alone or with its cluster, whatever the number of lists between:
@@ -79,11 +81,9 @@ constexpr double most_tested_above = 1024;
 PeakSums peaks_of_members(const Field& field, const Cone& cone, const ActiveElements& clusters) {
     const Stretch rays = all_of(field, cone, {0.0, infinity<double>});
     const double middle = 0.5 * rays.end, per_unit = 1 / field.unit;
-    const LocalStretch near{rays.axis,
-                            {},
-                            rays.spread,
-                            -middle * per_unit,
-                            (rays.end - middle) * (1 + 0x1p-50) * per_unit,
+    const LocalStretch near{rays.axis,          {},
+                            rays.spread,        rays.radius * (1 + 0x1p-46) * per_unit,
+                            -middle * per_unit, (rays.end - middle) * (1 + 0x1p-50) * per_unit,
                             middle * per_unit};
     return bundle_steps().bound_members(field, rays, middle, near, 0, clusters, nullptr);
 }

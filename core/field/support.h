@@ -28,11 +28,13 @@ struct ElementList {
     [[nodiscard]] std::size_t size() const { return elements.size() + clusters.size(); }
 };
 
-// All rays from `apex` whose direction makes an angle of at most asin(sine) with `axis`.
+// All rays from within `radius` of `apex` whose direction makes an angle of at most asin(sine) with
+// `axis`.
 struct Cone {
     Vec3d apex;
-    Vec3d axis;       // any length but 0
-    double sine = 0;  // rounded up; > 1: every direction
+    Vec3d axis;         // any length but 0
+    double sine = 0;    // rounded up; > 1: every direction
+    double radius = 0;  // rounded up
 };
 
 // No unit vector of the cone ends farther than this from that along its axis; above 1/2 where the

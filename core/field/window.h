@@ -53,7 +53,7 @@ struct StageEntries {
 // One window, ready for the inner loops.
 struct Window {
     double begin = 0, middle = 0, end = 0;  // t
-    Vec3d axis;                             // of the bundle, or of the part it is made for
+    Vec3d origin, axis;                     // of the bundle, or of the part it is made for
     float tau_begin = 0, tau_end = 0;       // (t - middle) / unit, outward
 
     // Bounds of f'' on the window: -fall <= f'' <= rise where f is smooth, per square of a scene

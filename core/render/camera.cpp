@@ -20,11 +20,49 @@ bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-Vec3d through_plane(const View& view, double u, double v) {
-    return view.forward + u * view.right + v * view.top;
+// What an origin on an orthographic camera's plane is off by: its three roundings a component, and the
+// plane's own axes.
+double origin_error(const View& view, double reach) {
+    const Vec3d& o = view.origin;
+    return 0x1p-48 * (std::abs(o.x) + std::abs(o.y) + std::abs(o.z) + reach);
 }
 
 }  // namespace
+
+Vec3d through_window(const View& view, double u, double v) {
+    const Vec3d through = view.forward + u * view.right + v * view.top;
+    if (!view.is_eye()) return through;
+    return view.window_distance * through + view.window_shift * view.right;
+}
+
+Vec3d origin_on_plane(const View& view, double u, double v) {
+    return view.origin + u * view.right + v * view.top;
+}
+
+double height_of(const Camera& camera) {
+    if (camera.height) return *camera.height;
+    return 2 * length(camera.target - camera.position) *
+           std::tan(camera.fov / 2 * radians_per_degree);
+}
+
+double usual_eye_distance(const Camera& camera) {
+    return length(camera.target - camera.position) / 30;
+}
+
+View eye_of(const View& view, Eye eye, double apart) {
+    if (view.is_orthographic()) {
+        throw Error("camera: an orthographic camera has no two eyes; make it a perspective one");
+    }
+    View of_eye = view;
+    const double to_right = eye == Eye::right ? apart / 2 : -apart / 2;
+    of_eye.origin = view.camera.position + to_right * view.right;
+    of_eye.window_distance = length(view.camera.target - view.camera.position);
+    of_eye.window_shift = -to_right;
+    if (!(apart > 0) || !finite(of_eye.origin) || of_eye.origin == view.camera.position) {
+        throw Error("camera: its eyes are lost to rounding; move them farther apart");
+    }
+    return of_eye;
+}
 
 View make_view(const Camera& camera) {
     if (const auto fault = find_fault(camera)) {
@@ -35,7 +73,9 @@ View make_view(const Camera& camera) {
     view.forward = unit(camera.target - camera.position);
     view.right = unit(cross(view.forward, unit(camera.up)));
     view.top = cross(view.right, view.forward);
-    view.s = std::tan(camera.fov / 2 * radians_per_degree);
+    view.origin = camera.position;
+    view.s = view.is_orthographic() ? height_of(camera) / 2
+                                    : std::tan(camera.fov / 2 * radians_per_degree);
     if (!finite(view.forward) || !finite(view.right) || !(view.s > 0 && std::isfinite(view.s))) {
         throw Error("camera: its frame is lost to rounding; move the numbers nearer to 1");
     }
@@ -51,9 +91,11 @@ double plane_v(const View& view, int height, int j) {
 }
 
 Ray primary_ray(const View& view, int width, int height, int i, int j) {
-    const Vec3d d = through_plane(view, plane_u(view, width, height, i), plane_v(view, height, j));
+    const double u = plane_u(view, width, height, i), v = plane_v(view, height, j);
+    if (view.is_orthographic()) return {origin_on_plane(view, u, v), view.forward};
+    const Vec3d d = through_window(view, u, v);
     const double norm = std::sqrt(dot(d, d));
-    return {view.camera.position, {d.x / norm, d.y / norm, d.z / norm}};
+    return {view.origin, {d.x / norm, d.y / norm, d.z / norm}};
 }
 
 // Each rounded step of plane_u and plane_v is monotonic, so the (u, v) of every pixel, as the
@@ -69,21 +111,34 @@ Ray primary_ray(const View& view, int width, int height, int i, int j) {
 // most. This counts for the pixel and for the corner, and the cross product and quotient below are
 // off by less than 12 e. Together that is below 32 e; the margin is 128 e, and sin(a + b) <= sin a
 // + b.
+//
+// An eye's vector is z times that and shift right: z (forward + (u + shift / z) right + v top), a
+// point of the same plane; its two roundings more are e of a sum that is 1 + |shift| / z times as large
+// at the most.
+//
+// An orthographic camera's origins lie in the parallelogram of the corners' exact places, but for
+// `origin_error`.
 Cone cone_around(const View& view, int width, int height, const PixelRect& rect) {
-    constexpr double margin = 128 * 0x1p-53;
+    if (view.is_orthographic()) {
+        const Bundle bundle = bundle_around(view, width, height, rect);
+        return {bundle.origin, bundle.axis, bundle.spread, bundle.radius};
+    }
+    const double margin =
+        128 * 0x1p-53 *
+        (view.is_eye() ? 1 + std::abs(view.window_shift) / view.window_distance : 1);
     constexpr double every_direction = 2;
     const double u[2] = {plane_u(view, width, height, rect.x0),
                          plane_u(view, width, height, rect.x1 - 1)};
     const double v[2] = {plane_v(view, height, rect.y0), plane_v(view, height, rect.y1 - 1)};
 
     Cone cone;
-    cone.apex = view.camera.position;
-    cone.axis = through_plane(view, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
+    cone.apex = view.origin;
+    cone.axis = through_window(view, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
     cone.sine = 0;
     const double axis_length = length(cone.axis);
     for (const double corner_u : u) {
         for (const double corner_v : v) {
-            const Vec3d corner = through_plane(view, corner_u, corner_v);
+            const Vec3d corner = through_window(view, corner_u, corner_v);
             // 1e-6 of the product of the lengths is more than rounding could feign.
             const double lengths = axis_length * length(corner);
             const bool acute = dot(cone.axis, corner) > 1e-6 * lengths;
@@ -96,7 +151,31 @@ Cone cone_around(const View& view, int width, int height, const PixelRect& rect)
     return cone;
 }
 
+Bundle orthographic_bundle(const View& view, double u0, double u1, double v0, double v1) {
+    Bundle bundle;
+    const double u = 0.5 * (u0 + u1), v = 0.5 * (v0 + v1);
+    bundle.origin = origin_on_plane(view, u, v);
+    bundle.axis = view.forward;
+    for (const double corner_u : {u0, u1}) {
+        for (const double corner_v : {v0, v1}) {
+            const Vec3d off = (corner_u - u) * view.right + (corner_v - v) * view.top;
+            bundle.radius = std::max(bundle.radius, length(off));
+        }
+    }
+    const double error = origin_error(
+        view, std::max(std::abs(u0), std::abs(u1)) + std::max(std::abs(v0), std::abs(v1)));
+    bundle.radius = bundle.radius * (1 + 0x1p-40) + error + std::numeric_limits<double>::min();
+    // forward . right and forward . top are below 8 e
+    bundle.spread = 0x1p-48 + error / bundle.radius;
+    return bundle;
+}
+
 Bundle bundle_around(const View& view, int width, int height, const PixelRect& rect) {
+    if (view.is_orthographic()) {
+        return orthographic_bundle(
+            view, plane_u(view, width, height, rect.x0), plane_u(view, width, height, rect.x1 - 1),
+            plane_v(view, height, rect.y0), plane_v(view, height, rect.y1 - 1));
+    }
     const Cone cone = cone_around(view, width, height, rect);
     return {cone.apex, unit(cone.axis), spread_of(cone)};
 }

@@ -2,6 +2,8 @@
 // rectangle of them. The camera of a scene that names none: framing.h.
 #pragma once
 
+#include <cstdint>
+
 #include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/support.h"
@@ -13,23 +15,52 @@ namespace ivory {
 
 // A camera and what follows from it, in double:
 //   forward = normalize(target - position), right = normalize(forward x up),
-//   top = right x forward, s = tan(fov / 2)
+//   top = right x forward, s = tan(fov / 2); of an orthographic camera s = height / 2
 struct View {
     Camera camera;
     Vec3d forward, right, top;
     double s = 0;
+
+    // Where the rays begin or, of an orthographic camera, the middle of the plane where they do: the
+    // camera's position, or that of an eye.
+    Vec3d origin;
+    // Of an eye: the distance of the window that both eyes look through, and how far to the right that
+    // stands of it. 0: not an eye.
+    double window_distance = 0, window_shift = 0;
+
+    [[nodiscard]] bool is_orthographic() const {
+        return camera.projection == Camera::Projection::orthographic;
+    }
+    [[nodiscard]] bool is_eye() const { return window_distance > 0; }
 };
 
 // Throws Error where the camera has a fault (core/scene/scene_fault.h) or its frame is lost to
 // rounding.
 [[nodiscard]] View make_view(const Camera& camera);
 
+// The height of an orthographic picture: as the camera says or, where it does not, what fov sees at the
+// target.
+[[nodiscard]] double height_of(const Camera& camera);
+
+enum class Eye : std::uint8_t { left, right };
+
+// The view of one of two eyes `apart` > 0 from each other, which see the target at the same place.
+// Throws Error where the camera is orthographic: its eyes would see the same.
+[[nodiscard]] View eye_of(const View& view, Eye eye, double apart);
+// Of eyes that nothing is said about: a thirtieth of the target's distance.
+[[nodiscard]] double usual_eye_distance(const Camera& camera);
+
 // The ray through the middle of pixel (i, j), j counted from the top, of a picture of
 // width x height:
-//   direction = normalize(forward + (2 (i + 0.5)/W - 1) s W/H right + (1 - 2 (j + 0.5)/H) s top)
+//   direction = normalize(forward + u right + v top)
+//   u = (2 (i + 0.5)/W - 1) s W/H,  v = (1 - 2 (j + 0.5)/H) s
+// of an eye, with z the window's distance,
+//   direction = normalize(z (forward + u right + v top) + shift right)
+// and of an orthographic camera direction = forward, origin = position + u right + v top.
 [[nodiscard]] Ray primary_ray(const View& view, int width, int height, int i, int j);
 
-// Where that ray passes the plane at distance 1 before the camera, the factors of right and top:
+// Where that ray passes the plane at distance 1 before the camera, or an orthographic one's own, the
+// factors of right and top:
 //
 //        +-----------------+  v =  s
 //        |  (0,0)   ...    |
@@ -40,9 +71,18 @@ struct View {
 [[nodiscard]] double plane_u(const View& view, int width, int height, int i);
 [[nodiscard]] double plane_v(const View& view, int height, int j);
 
+// The vector before it is normalised; and where an orthographic camera's ray begins.
+[[nodiscard]] Vec3d through_window(const View& view, double u, double v);
+[[nodiscard]] Vec3d origin_on_plane(const View& view, double u, double v);
+
 // A cone that holds the primary rays, as the doubles they are, of all pixels of a rectangle that is
 // not empty. Proof: camera.cpp.
 [[nodiscard]] Cone cone_around(const View& view, int width, int height, const PixelRect& rect);
+
+// Of an orthographic camera's rays through places of the plane with u0 <= u <= u1, v0 <= v <= v1 or the
+// other way round.
+[[nodiscard]] Bundle orthographic_bundle(const View& view, double u0, double u1, double v0,
+                                         double v1);
 
 // The same as core/field/bundle.h wants it; a spread above 1/2 where the cone is too wide for it.
 [[nodiscard]] Bundle bundle_around(const View& view, int width, int height, const PixelRect& rect);

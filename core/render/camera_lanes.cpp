@@ -22,11 +22,15 @@ using V = hn::Vec<D>;
 void directions_of_target(const View& view, std::size_t count, const double* us, const double* vs,
                           double* dx, double* dy, double* dz) {
     const D d;
+    const V window = hn::Set(d, view.window_distance), shift = hn::Set(d, view.window_shift);
+    const bool is_eye = view.is_eye();
     for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
         const V u = hn::LoadU(d, us + k), v = hn::LoadU(d, vs + k);
         const auto component = [&](double forward, double right, double top) HWY_ATTR {
-            return hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
-                           hn::Mul(v, hn::Set(d, top)));
+            const V through = hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
+                                      hn::Mul(v, hn::Set(d, top)));
+            if (!is_eye) return through;
+            return hn::Add(hn::Mul(window, through), hn::Mul(shift, hn::Set(d, right)));
         };
         const V x = component(view.forward.x, view.right.x, view.top.x);
         const V y = component(view.forward.y, view.right.y, view.top.y);
@@ -49,6 +53,12 @@ HWY_EXPORT(directions_of_target);
 
 void primary_directions(const View& view, std::size_t count, const double* u, const double* v,
                         double* dx, double* dy, double* dz) {
+    if (view.is_orthographic()) {
+        std::fill_n(dx, count, view.forward.x);
+        std::fill_n(dy, count, view.forward.y);
+        std::fill_n(dz, count, view.forward.z);
+        return;
+    }
     HWY_DYNAMIC_DISPATCH(directions_of_target)(view, count, u, v, dx, dy, dz);
 }
 
@@ -79,30 +89,42 @@ TileBundles tile_bundles(const View& view, int width, int height, int i, int j) 
         of_column[n] = plane_u(view, width, height, i + edge);
         of_row[n] = plane_v(view, height, j + edge);
     }
+    TileBundles bundles;
+    // Visits the number of each of them, its first column and row and how many edges it has.
+    const auto for_bundles = [&](const auto& visit) {
+        visit(0, 0, 0, edges);
+        for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+            const std::size_t x = quarter % 2 * 4, y = quarter / 2 * 4;
+            visit(1 + quarter, x, y, 4);
+            for (std::size_t square = 0; square < 4; ++square) {
+                visit(5 + quarter * 4 + square, x + square % 2 * 2, y + square / 2 * 2, 2);
+            }
+        }
+    };
+    if (view.is_orthographic()) {
+        for_bundles([&](std::size_t number, std::size_t x, std::size_t y, std::size_t side) {
+            bundles[number] = orthographic_bundle(view, of_column[x], of_column[x + side - 1],
+                                                  of_row[y], of_row[y + side - 1]);
+        });
+        return bundles;
+    }
     alignas(64) std::array<double, edges * edges> u, v, dx, dy, dz;
     for (std::size_t k = 0; k < edges * edges; ++k) {
         u[k] = of_column[k % edges];
         v[k] = of_row[k / edges];
     }
     primary_directions(view, u.size(), u.data(), v.data(), dx.data(), dy.data(), dz.data());
-    // Of `side` edges from column x and row y on.
-    const auto bundle = [&](std::size_t x, std::size_t y, std::size_t side) {
+    for_bundles([&](std::size_t number, std::size_t x, std::size_t y, std::size_t side) {
         const auto direction = [&](std::size_t at) { return Vec3d{dx[at], dy[at], dz[at]}; };
         const std::size_t first = y * edges + x, last = first + (side - 1) * edges;
-        return bundle_of(view.camera.position, {direction(first), direction(first + side - 1),
-                                                direction(last), direction(last + side - 1)});
-    };
-    TileBundles bundles;
-    bundles[0] = bundle(0, 0, 8);
-    for (std::size_t quarter = 0; quarter < 4; ++quarter) {
-        const std::size_t x = quarter % 2 * 4, y = quarter / 2 * 4;
-        bundles[1 + quarter] = bundle(x, y, 4);
-        for (std::size_t square = 0; square < 4; ++square) {
-            bundles[5 + quarter * 4 + square] = bundle(x + square % 2 * 2, y + square / 2 * 2, 2);
-        }
-    }
+        bundles[number] = bundle_of(view.origin, {direction(first), direction(first + side - 1),
+                                                  direction(last), direction(last + side - 1)});
+    });
     // As cone_around has it: the claims about rounding are for frames that are not skewed.
-    if (!(std::abs(dot(view.forward, view.right)) <= 0.5)) {
+    const bool is_skewed = !(std::abs(dot(view.forward, view.right)) <= 0.5);
+    // An eye's vectors may cancel (cone_around).
+    const bool is_aside = std::abs(view.window_shift) > 16 * view.window_distance;
+    if (is_skewed || is_aside) {
         for (Bundle& skewed : bundles) skewed.spread = 1;
     }
     return bundles;

@@ -37,11 +37,11 @@ void TileRays::gather(const View& view, const Frame& frame, const PixelRect& rec
     };
     const auto add_part = [&](std::size_t number, const PixelRect& part_of_tile) {
         const Bundle of_part = bundle(number, part_of_tile);
-        rays.add_part({.axis = of_part.axis, .spread = of_part.spread});
+        rays.add_part(whole_of(of_part));
     };
     rays.bundle = bundle(0, rect);
     if (in_parts) {
-        rays.add_part({.axis = rays.bundle.axis, .spread = rays.bundle.spread});
+        rays.add_part(whole_of(rays.bundle));
         rays.parts[0].first_part = 1;
         std::size_t number = 1;
         for_quarters(rect, 8, [&](const PixelRect& quarter) { add_part(number++, quarter); });
@@ -78,6 +78,14 @@ void TileRays::gather(const View& view, const Frame& frame, const PixelRect& rec
     rays.count = count;
     primary_directions(view, count, u.data(), v.data(), rays.dx.data(), rays.dy.data(),
                        rays.dz.data());
+    rays.has_origins = view.is_orthographic();
+    if (!rays.has_origins) return;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3d origin = origin_on_plane(view, u[k], v[k]);
+        rays.ox[k] = origin.x;
+        rays.oy[k] = origin.y;
+        rays.oz[k] = origin.z;
+    }
 }
 
 }  // namespace ivory

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/kernel/kernels.h"
@@ -38,11 +40,26 @@ struct Element {
 }
 
 struct Camera {
+    enum class Projection : std::uint8_t { perspective, orthographic };
+
     Vec3d position;
     Vec3d target;
     Vec3d up{0, 1, 0};
     double fov = 40;  // the full vertical angle in degrees, 0 < fov < 180
+    Projection projection = Projection::perspective;
+    // Of an orthographic picture, in scene units, > 0; without: what fov sees at the target. The
+    // other projection keeps it, but does not use it.
+    std::optional<double> height{};
     friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+inline constexpr std::array<std::string_view, 2> projection_words{"perspective", "orthographic"};
+
+// A camera to come back to.
+struct SavedView {
+    std::string name;  // not empty, unique in the scene
+    Camera camera;
+    friend bool operator==(const SavedView&, const SavedView&) = default;
 };
 
 struct Light {
@@ -56,7 +73,8 @@ struct Light {
 struct Scene {
     double threshold = 0.5;  // T > 0
     Color background{0.05, 0.06, 0.08};
-    std::optional<Camera> camera;              // without one: core/render/camera.h frames the scene
+    std::optional<Camera> camera;  // without one: core/render/camera.h frames the scene
+    std::vector<SavedView> views;
     std::optional<std::vector<Light>> lights;  // without: `default_lights`
     std::vector<Element> elements;
     friend bool operator==(const Scene&, const Scene&) = default;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -202,6 +203,15 @@ std::optional<Namesakes> first_namesakes(const std::vector<Element>& elements, c
     return found;
 }
 
+Fault unless_name(const std::string& pointer, const std::string& name) {
+    if (name.empty()) return SceneFault{pointer, "the name is empty; give it a letter at least"};
+    if (first_invalid_utf8(name)) {
+        return SceneFault{pointer,
+                          "the name " + in_quotes(name) + " is not valid UTF-8; write it in UTF-8"};
+    }
+    return std::nullopt;
+}
+
 Fault unless_names_are_unique(const std::vector<Element>& elements, const Stop& stop) {
     const std::optional<Namesakes> found = first_namesakes(elements, stop);
     if (!found) return std::nullopt;
@@ -243,6 +253,9 @@ std::optional<SceneFault> find_fault(const Camera& camera) {
     if (!(camera.fov > 0 && camera.fov < 180)) {
         return wrong("/fov", "the fov", camera.fov, "greater than 0 and less than 180 degrees");
     }
+    if (camera.height && !(*camera.height > 0 && std::isfinite(*camera.height))) {
+        return wrong("/height", "the height", *camera.height, "greater than 0, and finite");
+    }
     if (camera.position == camera.target) {
         return SceneFault{"/target",
                           "the target is the position itself; move one, so that the camera looks "
@@ -263,6 +276,23 @@ std::optional<SceneFault> find_fault(const Camera& camera) {
     return std::nullopt;
 }
 
+std::optional<SceneFault> find_fault(const std::vector<SavedView>& views) {
+    std::map<std::string_view, std::size_t> place_of;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::string place = "/" + std::to_string(i);
+        if (Fault fault = unless_name("/name", views[i].name)) return within(place, *fault);
+        const auto [earlier, is_new] = place_of.emplace(views[i].name, i);
+        if (!is_new) {
+            return SceneFault{place + "/name", "the name " + in_quotes(views[i].name) +
+                                                   " is also that of /views/" +
+                                                   std::to_string(earlier->second) +
+                                                   "; each view must have a name of its own"};
+        }
+        if (Fault fault = find_fault(views[i].camera)) return within(place + "/camera", *fault);
+    }
+    return std::nullopt;
+}
+
 std::optional<SceneFault> find_fault(const Light& light) {
     if (Fault fault = unless_direction("direction", light.direction)) return fault;
     if (Fault fault = unless_color("color", light.color)) return fault;
@@ -277,9 +307,8 @@ std::optional<SceneFault> find_fault(const Element& element) {
         return SceneFault{"/name",
                           "the name is empty; give it a letter at least, or leave the key out"};
     }
-    if (element.name && first_invalid_utf8(*element.name)) {
-        return SceneFault{"/name", "the name " + in_quotes(*element.name) +
-                                       " is not valid UTF-8; write it in UTF-8"};
+    if (element.name) {
+        if (Fault fault = unless_name("/name", *element.name)) return fault;
     }
     const auto skeleton_fault = [](const auto& skeleton) { return find_fault(skeleton); };
     if (Fault fault = std::visit(skeleton_fault, element.skeleton)) return fault;
@@ -310,6 +339,7 @@ std::optional<SceneFault> find_fault(const Scene& scene, const Stop& stop) {
     if (scene.camera) {
         if (Fault fault = find_fault(*scene.camera)) return within("/camera", *fault);
     }
+    if (Fault fault = find_fault(scene.views)) return within("/views", *fault);
     if (scene.lights) {
         for (std::size_t i = 0; i < scene.lights->size(); ++i) {
             if (Fault fault = find_fault((*scene.lights)[i])) {

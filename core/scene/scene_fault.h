@@ -22,6 +22,7 @@ struct SceneFault {
 // Faults of one part, their pointers relative to it ("/radius"): for an editor that checks what it
 // is about to change.
 [[nodiscard]] std::optional<SceneFault> find_fault(const Camera& camera);
+[[nodiscard]] std::optional<SceneFault> find_fault(const std::vector<SavedView>& views);
 [[nodiscard]] std::optional<SceneFault> find_fault(const Light& light);
 [[nodiscard]] std::optional<SceneFault> find_fault(const Element& element);
 

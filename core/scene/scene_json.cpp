@@ -29,10 +29,12 @@ constexpr std::array<std::string_view, A + B> joined(const std::array<std::strin
     return all;
 }
 
-constexpr std::array<std::string_view, 6> scene_keys{"ivory",  "threshold", "background",
-                                                     "camera", "lights",    "elements"};
+constexpr std::array<std::string_view, 7> scene_keys{"ivory", "threshold", "background", "camera",
+                                                     "views", "lights",    "elements"};
 constexpr std::array<std::string_view, 3> scene_needs{"ivory", "threshold", "elements"};
-constexpr std::array<std::string_view, 4> camera_keys{"position", "target", "up", "fov"};
+constexpr std::array<std::string_view, 6> camera_keys{"position", "target",     "up",
+                                                      "fov",      "projection", "height"};
+constexpr std::array<std::string_view, 2> view_keys{"name", "camera"};
 constexpr std::array<std::string_view, 4> light_keys{"direction", "color", "intensity", "attached"};
 constexpr std::array<std::string_view, 7> element_keys{"shape",    "name",  "color",  "kernel",
                                                        "strength", "width", "visible"};
@@ -68,6 +70,7 @@ struct ObjectFormat {
 
 constexpr ObjectFormat scene_format{"a scene", scene_keys, scene_needs};
 constexpr ObjectFormat camera_format{"a camera", camera_keys, Words(camera_keys).first(2)};
+constexpr ObjectFormat view_format{"a view", view_keys, view_keys};
 constexpr ObjectFormat light_format{"a light", light_keys, Words(light_keys).first(1)};
 // Of an element whose shape is not known yet.
 constexpr ObjectFormat element_format{"an element", element_keys, Words(element_keys).first(1)};
@@ -206,6 +209,11 @@ void read(const Node& node, bool& flag) {
     flag = node.value.boolean();
 }
 
+void read(const Node& node, std::string& text) {
+    node.must_be(JsonKind::text, "a text");
+    text = node.value.text();
+}
+
 void read(const Node& node, std::optional<std::string>& text) {
     node.must_be(JsonKind::text, "text");
     text = node.value.text();
@@ -247,14 +255,26 @@ void read(const Node& node, KernelKind& kernel) {
     kernel = static_cast<KernelKind>(one_of(node, kernel_words));
 }
 
-void read(const Node& node, std::optional<Camera>& camera) {
+void read(const Node& node, Camera& camera) {
     node.must_be(JsonKind::object, "an object with position and target");
     const Members members(node, camera_format);
-    camera.emplace();
-    read(members.required("position"), camera->position);
-    read(members.required("target"), camera->target);
-    read_if_there(members, "up", camera->up);
-    read_if_there(members, "fov", camera->fov);
+    read(members.required("position"), camera.position);
+    read(members.required("target"), camera.target);
+    read_if_there(members, "up", camera.up);
+    read_if_there(members, "fov", camera.fov);
+    if (const auto projection = members.optional("projection")) {
+        camera.projection = static_cast<Camera::Projection>(one_of(*projection, projection_words));
+    }
+    if (const auto height = members.optional("height")) read(*height, camera.height.emplace());
+}
+
+void read(const Node& node, std::optional<Camera>& camera) { read(node, camera.emplace()); }
+
+void read(const Node& node, SavedView& view) {
+    node.must_be(JsonKind::object, "an object with name and camera");
+    const Members members(node, view_format);
+    read(members.required("name"), view.name);
+    read(members.required("camera"), view.camera);
 }
 
 void read(const Node& node, Light& light) {
@@ -333,6 +353,9 @@ void read(const Node& node, Scene& scene) {
     read(members.required("threshold"), scene.threshold);
     read_if_there(members, "background", scene.background);
     read_if_there(members, "camera", scene.camera);
+    if (const auto views = members.optional("views")) {
+        read_list(*views, "a list of views", scene.views);
+    }
     if (const auto lights = members.optional("lights")) {
         read_list(*lights, "a list of lights", scene.lights.emplace());
     }

@@ -80,6 +80,11 @@ void append_members(Members members, const Camera& camera) {
         .add("target", camera.target)
         .add("up", camera.up)
         .add("fov", camera.fov);
+    if (camera.projection != Camera::Projection::perspective) {
+        members.add_word("projection",
+                         projection_words[static_cast<std::size_t>(camera.projection)]);
+    }
+    if (camera.height) members.add("height", *camera.height);
 }
 
 void append_members(Members members, const Light& light) {
@@ -113,6 +118,14 @@ void append_members(Members members, const Element& element) {
 }
 
 template <class Part>
+void append_object(std::string& text, const Part& part);
+
+void append_members(Members members, const SavedView& view) {
+    members.add("name") += nlohmann::json(view.name).dump();
+    append_object(members.add("camera"), view.camera);
+}
+
+template <class Part>
 void append_object(std::string& text, const Part& part) {
     text += "{";
     append_members(Members(text, on_one_line), part);
@@ -138,6 +151,7 @@ std::string checked_text(const Scene& scene, const std::string& label) {
     Members members(text, one_per_line);
     members.add("ivory", 1).add("threshold", scene.threshold).add("background", scene.background);
     if (scene.camera) append_object(members.add("camera"), *scene.camera);
+    if (!scene.views.empty()) append_list(members.add("views"), scene.views);
     if (scene.lights) append_list(members.add("lights"), *scene.lights);
     append_list(members.add("elements"), scene.elements);
     text += "\n}\n";

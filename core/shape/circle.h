@@ -246,11 +246,10 @@ struct ShapeLanes<CircleSkeleton> {
         const Tag d;
         const V<Tag> zero = hn::Zero(d);
         const V<Tag> rho0 = rho_at(e, s.axis, s.begin), rho1 = rho_at(e, s.axis, s.end);
-        const Real aside = (s.t_offset + s.end) * s.spread * Margin::more * Margin::more;
         const V<Tag> rho = hn::Sub(
             least_between(d, at_least_0(hn::Sub(rho0, error)), at_least_0(hn::Sub(rho1, error)),
                           (s.end - s.begin) * Margin::more),
-            hn::Set(d, aside));
+            hn::Set(d, s.aside()));
         const V<Tag> unrounded = hn::Div(constant(d, 1), rho);
         const M<Tag> bounded = hn::And(hn::Gt(rho, zero), hn::Lt(hn::Mul(e.parameter, unrounded),
                                                                  constant(d, greatest_outward)));

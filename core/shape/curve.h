@@ -351,7 +351,7 @@ struct ShapeLanes<CurveSkeleton> {
         const V<Tag> g0 = dot<Tag>(v0, k1), g1 = dot<Tag>(v1, k1);
         const V<Tag> aside = hn::Add(
             hn::MulAdd(hn::Add(e.parameter, fastest), hn::Set(d, 4 * Margin::margin), error),
-            hn::Set(d, (s.t_offset + s.end) * s.spread * Margin::more * Margin::more));
+            hn::Set(d, s.aside()));
         const V<Tag> reach = hn::Add(hn::Max(length_of(d, v0), length_of(d, v1)), aside);
         const V<Tag> third = e.number(at_third), speeding = e.number(at_speeding);
         // |k2| + |k3| <= |c''| / 2, at the most; and |v.k2| as computed is off by `aside` |k2|

@@ -95,8 +95,9 @@ struct ShapeLanes<PointSkeleton> {
     }
 
     // s = y + h^2, y measured along the ray's line and h across it. A ray of the bundle runs past the
-    // point at least h = across - (t |d - axis|) away, and its foot slips by no more than that turns
-    // and moves it.
+    // point at least h = across - |o - origin| - t |d - axis| away, and its foot slips by no more than
+    // that turns and moves it: with c the point, (c - o).d - (c - origin).axis =
+    // (c - origin).(d - axis) - (o - origin).d, the latter at most 2 spread radius.
     template <class Tag>
     static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>& e,
                                                           const Reach<hn::TFromD<Tag>>& s,
@@ -108,13 +109,16 @@ struct ShapeLanes<PointSkeleton> {
         const V<Tag> across = hn::Sqrt(c.across_square);
         const V<Tag> offset = hn::Set(d, s.t_offset);
         const V<Tag> spread = hn::Set(d, s.spread * Margin::more);
-        const V<Tag> turn = hn::Mul(hn::Add(offset, e.magnitude), spread);
+        const V<Tag> radius = hn::Set(d, s.radius * Margin::more);
+        // up to where the ray has passed the point
+        const V<Tag> passed = hn::Add(hn::Add(offset, e.magnitude), radius);
+        const V<Tag> turn = hn::MulAdd(passed, spread, radius);
         const V<Tag> h = at_least_0(hn::Sub(hn::Sub(across, turn), error));
         const V<Tag> h_square = hn::Mul(hn::Mul(square_of(h), e.inverse_square), reduced);
-        const V<Tag> slip =
-            hn::Mul(hn::MulAdd(hn::Add(offset, hn::Abs(c.along)), hn::Set(d, s.spread * s.spread),
-                               hn::MulAdd(across, spread, error)),
-                    widened);
+        const V<Tag> slip = hn::Mul(
+            hn::MulAdd(hn::Add(offset, hn::Abs(c.along)), hn::Set(d, s.spread * s.spread),
+                       hn::MulAdd(hn::MulAdd(constant(d, 2), radius, across), spread, error)),
+            widened);
         const V<Tag> x0 = hn::Sub(hn::Sub(hn::Set(d, s.begin), c.along), slip);
         const V<Tag> x1 = hn::Add(hn::Sub(hn::Set(d, s.end), c.along), slip);
         const V<Tag> near = at_least_0(hn::Max(x0, hn::Neg(x1)));

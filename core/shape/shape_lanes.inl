@@ -64,14 +64,20 @@ HWY_INLINE V<Tag> least_between(Tag d, V<Tag> d0, V<Tag> d1, hn::TFromD<Tag> L) 
 }
 
 // A stretch as the lanes see it: the points base + tau axis, begin <= tau <= end, and what is at
-// most `spread` times t = tau + t_offset away from them. Places are relative to the bundle's origin
+// most radius + spread t, t = tau + t_offset, away from them. Places are relative to the bundle's origin
 // in double, to the middle of some stretch in float.
 template <class Real>
 struct Reach {
     Vec3<Real> axis, base;
-    Real begin, end, spread;
+    Real begin, end, spread, radius;
     Real t_offset;
     Real magnitude;  // of all numbers here but t_offset: what rounding is relative to
+
+    // So far from the axis' points are the rays' at most.
+    [[nodiscard]] Real aside() const {
+        constexpr auto widened = Margins<Real>::more;
+        return ((t_offset + end) * spread + radius) * widened * widened;
+    }
 };
 
 // The numbers of some elements, side by side (SkeletonColumns::numbers).
@@ -175,15 +181,16 @@ HWY_INLINE V<Tag> error_of(Tag d, V<Tag> magnitude, const Reach<hn::TFromD<Tag>>
                    hn::Set(d, Margins<hn::TFromD<Tag>>::margin));
 }
 
-// At most so far from the axis' points are the rays', up to t = far: beyond, each ray only gets
+// At most so far from the axis' points are the rays', up to the t from which on each ray only gets
 // farther from every point of the skeleton, so that what holds up to there holds on.
 template <class Tag>
 HWY_INLINE V<Tag> aside_of(Tag d, V<Tag> magnitude, const Reach<hn::TFromD<Tag>>& s) {
     const V<Tag> offset = hn::Set(d, s.t_offset);
-    const V<Tag> last =
-        hn::Max(hn::Set(d, s.t_offset + s.begin),
-                hn::Min(hn::Set(d, s.t_offset + s.end), hn::Add(offset, magnitude)));
-    return hn::Mul(last, hn::Set(d, s.spread * Margins<hn::TFromD<Tag>>::more));
+    const V<Tag> last = hn::Max(hn::Set(d, s.t_offset + s.begin),
+                                hn::Min(hn::Set(d, s.t_offset + s.end),
+                                        hn::Add(offset, hn::Add(magnitude, hn::Set(d, s.radius)))));
+    constexpr auto widened = Margins<hn::TFromD<Tag>>::more;
+    return hn::MulAdd(last, hn::Set(d, s.spread * widened), hn::Set(d, s.radius * widened));
 }
 
 // A lower bound of the distances of the axis' points from those at both ends, or from a ball around
@@ -204,17 +211,15 @@ HWY_INLINE V<Tag> nearest_of_ends_and_ball(Tag d, V<Tag> d0, V<Tag> d1, const Ve
 template <class Tag>
 HWY_INLINE DistanceRange<Tag> range_of_rays(Tag d, V<Tag> magnitude, V<Tag> near, V<Tag> far,
                                             const Reach<hn::TFromD<Tag>>& s, V<Tag> error) {
-    constexpr auto widened = Margins<hn::TFromD<Tag>>::more;
     return {at_least_0(hn::Sub(near, aside_of(d, magnitude, s))),
-            hn::Add(far, hn::Add(error,
-                                 hn::Set(d, (s.t_offset + s.end) * s.spread * widened * widened)))};
+            hn::Add(far, hn::Add(error, hn::Set(d, s.aside())))};
 }
 
 // A window as its entries see it, in their lengths.
 struct Entering {
     double u;     // unit roundoff of the stage
     double unit;  // of the entries' lengths, in those of the elements
-    double H;     // the greatest |t - middle| + t |d - axis|
+    double H;     // the greatest |t - middle| + t |d - axis| + |o - origin|
     double end;   // the greatest t
     // c - M is known to 2 u of itself and this.
     double place_error;

@@ -221,8 +221,7 @@ struct TaperLanes {
         const Tag d;
         const V<Tag> alpha = hn::Min(dot<Tag>(e.from_axis(s.axis, s.begin), e.m),
                                      dot<Tag>(e.from_axis(s.axis, s.end), e.m));
-        const V<Tag> aside = hn::Add(
-            error, hn::Set(d, (s.t_offset + s.end) * s.spread * Margin::more * Margin::more));
+        const V<Tag> aside = hn::Add(error, hn::Set(d, s.aside()));
         const V<Tag> least = hn::NegMulAdd(hn::Mul(e.size, hn::Set(d, Margin::more)), aside, alpha);
         const V<Tag> share =
             hn::Div(hn::Mul(e.taper_rate, least),
@@ -254,8 +253,7 @@ struct TaperLanes {
         const V<Tag> sag = hn::Mul(r, hn::Set(d, half * half));
         // |v| at most, and how far a ray is from the axis there
         const V<Tag> far = hn::Add(e.magnitude, hn::Set(d, s.magnitude));
-        const V<Tag> aside = hn::Add(
-            error, hn::Set(d, (s.t_offset + s.end) * s.spread * Margin::more * Margin::more));
+        const V<Tag> aside = hn::Add(error, hn::Set(d, s.aside()));
         const V<Tag> reach = hn::Add(far, aside);
         const V<Tag> steepest = hn::MulAdd(hn::Add(r, one), e.size, hn::Mul(hn::Add(r, r), reach));
         const V<Tag> size = hn::MulAdd(

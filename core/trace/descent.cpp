@@ -15,7 +15,7 @@ bool Descent::build(const Field& field, const ElementList& list, const Bundle& b
     return true;
 }
 
-void Descent::begin(std::span<const BundlePart> parts, const Directions& rays, int budget) {
+void Descent::begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget) {
     left_ = budget;
     parts_ = parts;
     rays_ = rays;
@@ -50,14 +50,14 @@ Window* Descent::take_own(const Piece& piece) {
     const bool parts_there = has_parts(piece);
     // Where the rays are farther apart than the stretch is long, to halve it says less of each of
     // them than to part them.
-    if (divides && !(parts_there && t1 * part.spread > t1 - t0)) {
+    if (divides && !(parts_there && width_at(part, t1) > t1 - t0)) {
         const double middle = 0.5 * (t0 + t1);
         open_.push_back({.begin = middle, .end = t1, .part = part, .depth = piece.depth + 1});
         open_.push_back({.begin = t0, .end = middle, .part = part, .depth = piece.depth + 1});
         return nullptr;
     }
     const bool parts_differ = !has_single_rays(part) && here.size() >= parts_elements &&
-                              t1 * part.spread > parts_apart * (t1 - t0);
+                              width_at(part, t1) > parts_apart * (t1 - t0);
     if (parts_there && (divides || parts_differ)) {
         part_up(piece);
         return nullptr;
@@ -72,7 +72,8 @@ void Descent::part_up(const Piece& piece) {
     of_part.depth = piece.depth + 1;
     if (has_single_rays(part)) {
         for (std::uint32_t k = part.end; k-- > part.first;) {
-            of_part.part = {.axis = rays_[k], .first = k, .end = k + 1};
+            of_part.part = {
+                .axis = rays_[k], .origin = rays_.origin(k, part.origin), .first = k, .end = k + 1};
             open_.push_back(of_part);
         }
     } else {
@@ -86,7 +87,8 @@ void Descent::part_up(const Piece& piece) {
 bool Descent::has_parts(const Piece& piece) const {
     const BundlePart& part = piece.part;
     return piece.depth < greatest_depth &&
-           (!has_single_rays(part) || (parts_.size() > 1 && part.spread > 0 && rays_.x != nullptr));
+           (!has_single_rays(part) ||
+            (parts_.size() > 1 && width_at(part, 1) > 0 && rays_.x != nullptr));
 }
 
 Window* Descent::give_up() {
@@ -98,7 +100,7 @@ Window* Descent::give_up() {
 void Descent::share(const CommonBundle& common) {
     // Few elements are bounded sooner than looked up.
     if (!(common.bundle.spread <= 0.5) || field_.size() < parts_elements) return;
-    common_ = {.axis = common.bundle.axis, .spread = common.bundle.spread};
+    common_ = whole_of(common.bundle);
     if (shared_number_ != common.number) {
         shared_number_ = common.number;
         shared_count_ = 0;
@@ -114,7 +116,7 @@ void Descent::share(const CommonBundle& common) {
 }
 
 bool Descent::is_too_wide_at(double t) const {
-    return t * common_.spread > widest_common * field_.unit();
+    return width_at(common_, t) > widest_common * field_.unit();
 }
 
 void Descent::add_shared(double begin, double end, std::size_t parent) {

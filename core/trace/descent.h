@@ -16,13 +16,6 @@
 
 namespace ivory {
 
-// Those of a bundle's rays, component by component; null: not told.
-struct Directions {
-    const double *x = nullptr, *y = nullptr, *z = nullptr;
-
-    [[nodiscard]] Vec3d operator[](std::size_t k) const { return {x[k], y[k], z[k]}; }
-};
-
 // Reused from bundle to bundle: it keeps its memory.
 class Descent {
   public:
@@ -45,7 +38,7 @@ class Descent {
     // may be a part of its own, whose axis is that of the ray in `rays`. When `budget` stretches
     // have been bounded, one window for all rays that is not `coarse_usable` and begins at 0 is the
     // last. Both arrays have to stay.
-    void begin(std::span<const BundlePart> parts, const Directions& rays, int budget);
+    void begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget);
 
     // The next window, until it is asked again, and part() is whom it is for; null: there is none.
     // f < 0 certainly holds on the parts of span() between windows. Which there are depends on
@@ -106,6 +99,9 @@ class Descent {
     void halve_shared(std::size_t index);
     [[nodiscard]] Piece shared_piece(std::size_t index, std::size_t depth) const;
     [[nodiscard]] bool is_too_wide_at(double t) const;
+    [[nodiscard]] static double width_at(const BundlePart& part, double t) {
+        return part.radius + t * part.spread;
+    }
 
     // It lies outside of the bundle's own span.
     [[nodiscard]] bool is_outside(const Piece& piece) const {
@@ -132,7 +128,7 @@ class Descent {
     BundleField field_;
     Interval<double> span_ = Interval<double>::empty_set();
     std::span<const BundlePart> parts_;
-    Directions rays_;
+    RayColumns rays_;
     std::vector<Piece> open_;                // the last comes next
     std::vector<Bounded> bounded_by_depth_;  // what the pieces above the next one are bounded by
     BundlePart part_;                        // of the window

@@ -294,10 +294,12 @@ HWY_INLINE Enclosed not_enclosed(const Enclosing& task, const Vec3v<D>& directio
 
 // Returns the pairs of a lane and a step.
 template <std::size_t n>
-HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&direction)[n],
+HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&ray)[n],
                                      Enclosed (&enclosed)[n]) {
     const D d;
     std::size_t steps = 0;
+    Vec3v<D> direction[n];
+    for_each_of<n>([&](auto half) HWY_ATTR { direction[half] = ray[half].direction; });
     for (int step = 0; step < 4; ++step) {
         std::size_t open = 0;
         for_each_of<n>([&](auto half) HWY_ATTR { open += hn::CountTrue(d, enclosed[half].open); });
@@ -312,9 +314,8 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&dir
                 branches[half].begin(hn::Set(d, (1 - 0x1p-40) / reach), hn::Set(d, task.error));
             });
         }
-        for_each_of<n>([&](auto half) HWY_ATTR {
-            p[half] = place(task.window, direction[half], enclosed[half].m);
-        });
+        for_each_of<n>([&](auto half)
+                           HWY_ATTR { p[half] = place(task.window, ray[half], enclosed[half].m); });
         evaluate_fine(task.window, task.threshold, task.unit, p, direction, value, branches);
         for_each_of<n>([&](auto half) HWY_ATTR {
             enclosed[half].take(task, value[half], branches[half], reach);
@@ -322,14 +323,6 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const Vec3v<D> (&dir
     }
     return steps;
 }
-
-// Lanes that stand alone are gathered from here and there.
-struct Batch {
-    static constexpr std::size_t room = HWY_MAX_BYTES / sizeof(float);
-    alignas(64) double dx[room] = {}, dy[room] = {}, dz[room] = {}, t[room] = {};
-    std::uint32_t lane[room];
-    std::size_t count = 0;
-};
 
 // What becomes of lanes that are not done.
 struct Outcome {
@@ -342,16 +335,15 @@ std::uint64_t enclose_batch(const Enclosing& task, const Outcome& outcome, Batch
                             Lanes& lanes) {
     const D d;
     const std::size_t N = hn::Lanes(d);
-    Vec3v<D> direction[n];
+    RayLanes<D> ray[n];
     Enclosed enclosed[n];
     for_each_of<n>([&](auto half) HWY_ATTR {
         const std::size_t at = half * N;
-        direction[half] = {hn::Load(d, batch.dx + at), hn::Load(d, batch.dy + at),
-                           hn::Load(d, batch.dz + at)};
-        enclosed[half] = not_enclosed(task, direction[half], hn::Load(d, batch.t + at),
+        ray[half] = rays_of(task.window, batch.rays(at));
+        enclosed[half] = not_enclosed(task, ray[half].direction, hn::Load(d, batch.t + at),
                                       hn::FirstN(d, batch.count - std::min(at, batch.count)));
     });
-    const std::uint64_t steps = enclose_lanes(task, direction, enclosed);
+    const std::uint64_t steps = enclose_lanes(task, ray, enclosed);
     for_each_of<n>([&](auto half) HWY_ATTR {
         alignas(64) double lo[HWY_MAX_BYTES / sizeof(double)], hi[HWY_MAX_BYTES / sizeof(double)];
         hn::Store(enclosed[half].lo, d, lo);
@@ -416,28 +408,22 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
             std::uint64_t bits = bits_of(narrow, candidates);
             for (; bits != 0; bits &= bits - 1) {
                 const std::size_t lane = k + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
-                const std::size_t at = batch.count++;
-                batch.lane[at] = static_cast<std::uint32_t>(lane);
-                batch.dx[at] = lanes.dx[lane];
-                batch.dy[at] = lanes.dy[lane];
-                batch.dz[at] = lanes.dz[lane];
-                batch.t[at] = lanes.t[lane];
+                batch.add(lane, lanes);
                 if (batch.count == step) steps += enclose_batch(task, outcome, batch, lanes);
             }
             continue;
         }
-        Vec3v<D> direction[halves];
+        RayLanes<D> ray[halves];
         Enclosed enclosed[halves];
         M<D> taken[halves];
         for_each_of<halves>([&](auto half) HWY_ATTR {
             const std::size_t at = k + half * N;
-            direction[half] = {hn::LoadU(d, lanes.dx + at), hn::LoadU(d, lanes.dy + at),
-                               hn::LoadU(d, lanes.dz + at)};
+            ray[half] = rays_of(d, window, unit, lanes, at);
             taken[half] = lanes_in(d, Lanes::candidate, lanes, at, std::max(at, end));
             enclosed[half] =
-                not_enclosed(task, direction[half], hn::LoadU(d, &lanes.t[at]), taken[half]);
+                not_enclosed(task, ray[half].direction, hn::LoadU(d, &lanes.t[at]), taken[half]);
         });
-        steps += enclose_lanes(task, direction, enclosed);
+        steps += enclose_lanes(task, ray, enclosed);
         for_each_of<halves>([&](auto half) HWY_ATTR {
             const std::size_t at = k + half * N;
             const Enclosed& e = enclosed[half];

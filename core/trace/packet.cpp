@@ -25,15 +25,13 @@ double exact_limit(const Field& field, const Bundle& bundle) {
 
 void PacketTracer::take(const RayBundle& rays, bool in_parts) {
     lanes_.count = rays.count;
-    lanes_.dx = rays.dx.data();
-    lanes_.dy = rays.dy.data();
-    lanes_.dz = rays.dz.data();
+    lanes_.rays = rays.columns();
     packet_steps().prepare(lanes_);
 
     if (rays.part_count > 0 && in_parts) {
         parts_.assign(rays.parts.begin(), rays.parts.begin() + rays.part_count);
     } else {
-        parts_.assign(1, {.axis = rays.bundle.axis, .spread = rays.bundle.spread});
+        parts_.assign(1, whole_of(rays.bundle));
     }
     parts_[0].end = static_cast<std::uint32_t>(rays.count);
 }
@@ -111,7 +109,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     take(rays, settings.skipping.parts);
     counts.skipping.rays += rays.count;
     Job job{field, settings, surfaces, exact_limit(field, rays.bundle), counts};
-    descent_.begin(parts_, {lanes_.dx, lanes_.dy, lanes_.dz},
+    descent_.begin(parts_, lanes_.rays,
                    parts_.size() == 1 ? budget + budget_of_part
                                       : budget + static_cast<int>(parts_.size()) * budget_of_part +
                                             budget_of_rays);
@@ -204,8 +202,8 @@ void PacketTracer::about_roots(double left_out, const BundlePart& part, Job& job
         const double t = midpoint(bracket);
         lanes_.state[k] = Lanes::candidate;
         lanes_.t[k] = t;
-        const Vec3d direction{lanes_.dx[k], lanes_.dy[k], lanes_.dz[k]};
-        enclose_lanes(descent_.field().about_root(direction, t), left_out, k, k + 1,
+        const Vec3d direction = lanes_.rays[k], origin = lanes_.rays.origin(k, part.origin);
+        enclose_lanes(descent_.field().about_root(origin, direction, t), left_out, k, k + 1,
                       Lanes::undecided, Lanes::undecided, job);
         if (lanes_.state[k] != Lanes::undecided) continue;
         lanes_.t_lo[k] = bracket.lo;
@@ -252,7 +250,7 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
         lanes_.t[k] = m[k];
     }
-    descent_.begin(parts_, {lanes_.dx, lanes_.dy, lanes_.dz}, std::numeric_limits<int>::max());
+    descent_.begin(parts_, lanes_.rays, std::numeric_limits<int>::max());
     const auto wanted = [&](const BundlePart& part, double t0, double t1) {
         return std::any_of(m.begin() + part.first, m.begin() + part.end,
                            [=](double t) { return t >= t0 && t < t1 && t < limit; });

@@ -43,9 +43,9 @@ void prepare(Lanes& lanes) {
                 hn::IfThenElseZero(hn::RebindMask(d, used), rounded_difference(values + k, 0)), d,
                 to + k);
         };
-        put(lanes.dx, lanes.fx.data());
-        put(lanes.dy, lanes.fy.data());
-        put(lanes.dz, lanes.fz.data());
+        put(lanes.rays.x, lanes.fx.data());
+        put(lanes.rays.y, lanes.fy.data());
+        put(lanes.rays.z, lanes.fz.data());
         hn::StoreU(hn::IfThenElse(used, walking, unused), di, &lanes.state[k]);
     }
 }
@@ -108,44 +108,91 @@ void conclude(const Lanes& lanes, BundleIsolations& isolations) {
     }
 }
 
-// Directions, and what (2) of core/field/bundle.h adds to them in the window's middle.
+// p(t) = middle + (t - the window's middle) direction: (2) of core/field/bundle_field.h.
 template <class Tag>
 struct RayLanes {
     Vec3v<Tag> direction, middle;
 };
 
-HWY_INLINE RayLanes<D> rays_of(D d, const Window& window, double, const Lanes& lanes,
+// Of vectors of directions and, unless null, origins.
+HWY_INLINE RayLanes<D> rays_of(const Window& window, const RayColumns& from) {
+    const D d;
+    const V<D> x = hn::LoadU(d, from.x), y = hn::LoadU(d, from.y), z = hn::LoadU(d, from.z),
+               middle = hn::Set(d, window.middle);
+    RayLanes<D> rays{{x, y, z},
+                     {hn::Mul(middle, hn::Sub(x, hn::Set(d, window.axis.x))),
+                      hn::Mul(middle, hn::Sub(y, hn::Set(d, window.axis.y))),
+                      hn::Mul(middle, hn::Sub(z, hn::Set(d, window.axis.z)))}};
+    if (from.ox == nullptr) return rays;
+    const auto add = [&](V<D>& to, const double* origin, double common) HWY_ATTR {
+        to = hn::Add(to, hn::Sub(hn::LoadU(d, origin), hn::Set(d, common)));
+    };
+    add(rays.middle.x, from.ox, window.origin.x);
+    add(rays.middle.y, from.oy, window.origin.y);
+    add(rays.middle.z, from.oz, window.origin.z);
+    return rays;
+}
+
+HWY_INLINE RayLanes<D> rays_of(D, const Window& window, double, const Lanes& lanes,
                                std::size_t first) {
-    const V<D> x = hn::LoadU(d, lanes.dx + first), y = hn::LoadU(d, lanes.dy + first),
-               z = hn::LoadU(d, lanes.dz + first), middle = hn::Set(d, window.middle);
-    return {{x, y, z},
-            {hn::Mul(middle, hn::Sub(x, hn::Set(d, window.axis.x))),
-             hn::Mul(middle, hn::Sub(y, hn::Set(d, window.axis.y))),
-             hn::Mul(middle, hn::Sub(z, hn::Set(d, window.axis.z)))}};
+    return rays_of(window, lanes.rays.from(first));
 }
 
 HWY_INLINE RayLanes<F> rays_of(F d, const Window& window, double unit, const Lanes& lanes,
                                std::size_t first) {
     const V<F> middle = hn::Set(d, static_cast<float>(window.middle / unit));
-    return {{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
-             hn::LoadU(d, &lanes.fz[first])},
-            {hn::Mul(middle, rounded_difference(lanes.dx + first, window.axis.x)),
-             hn::Mul(middle, rounded_difference(lanes.dy + first, window.axis.y)),
-             hn::Mul(middle, rounded_difference(lanes.dz + first, window.axis.z))}};
+    RayLanes<F> rays{{hn::LoadU(d, &lanes.fx[first]), hn::LoadU(d, &lanes.fy[first]),
+                      hn::LoadU(d, &lanes.fz[first])},
+                     {hn::Mul(middle, rounded_difference(lanes.rays.x + first, window.axis.x)),
+                      hn::Mul(middle, rounded_difference(lanes.rays.y + first, window.axis.y)),
+                      hn::Mul(middle, rounded_difference(lanes.rays.z + first, window.axis.z))}};
+    if (lanes.rays.ox != nullptr) {
+        const V<F> per_unit = hn::Set(d, static_cast<float>(1 / unit));  // a power of two
+        const auto add = [&](V<F>& to, const double* origin, double from) HWY_ATTR {
+            to = hn::MulAdd(rounded_difference(origin + first, from), per_unit, to);
+        };
+        add(rays.middle.x, lanes.rays.ox, window.origin.x);
+        add(rays.middle.y, lanes.rays.oy, window.origin.y);
+        add(rays.middle.z, lanes.rays.oz, window.origin.z);
+    }
+    return rays;
 }
 
 constexpr std::size_t widest = 8;  // doubles in a vector of any target
 
-// (2) of core/field/bundle.h.
-HWY_INLINE Vec3v<D> place(const Window& window, const Vec3v<D>& direction, V<D> t) {
-    const D d;
-    const V<D> middle = hn::Set(d, window.middle);
-    const V<D> tau = hn::Sub(t, middle);
-    const auto component = [&](V<D> along, double axis) HWY_ATTR {
-        return hn::MulAdd(tau, along, hn::Mul(middle, hn::Sub(along, hn::Set(d, axis))));
-    };
-    return {component(direction.x, window.axis.x), component(direction.y, window.axis.y),
-            component(direction.z, window.axis.z)};
+// Lanes that stand alone are gathered from here and there.
+struct Batch {
+    static constexpr std::size_t room = HWY_MAX_BYTES / sizeof(float);
+    alignas(64) double dx[room] = {}, dy[room] = {}, dz[room] = {}, t[room] = {};
+    alignas(64) double ox[room] = {}, oy[room] = {}, oz[room] = {};
+    bool has_origins = false;
+    std::uint32_t lane[room];
+    std::size_t count = 0;
+
+    [[nodiscard]] RayColumns rays(std::size_t at) const {
+        if (!has_origins) return {dx + at, dy + at, dz + at};
+        return {dx + at, dy + at, dz + at, ox + at, oy + at, oz + at};
+    }
+    void add(std::size_t from, const Lanes& lanes) {
+        lane[count] = static_cast<std::uint32_t>(from);
+        dx[count] = lanes.rays.x[from];
+        dy[count] = lanes.rays.y[from];
+        dz[count] = lanes.rays.z[from];
+        has_origins = lanes.rays.ox != nullptr;
+        if (has_origins) {
+            ox[count] = lanes.rays.ox[from];
+            oy[count] = lanes.rays.oy[from];
+            oz[count] = lanes.rays.oz[from];
+        }
+        t[count++] = lanes.t[from];
+    }
+};
+
+HWY_INLINE Vec3v<D> place(const Window& window, const RayLanes<D>& ray, V<D> t) {
+    const V<D> tau = hn::Sub(t, hn::Set(D(), window.middle));
+    return {hn::MulAdd(tau, ray.direction.x, ray.middle.x),
+            hn::MulAdd(tau, ray.direction.y, ray.middle.y),
+            hn::MulAdd(tau, ray.direction.z, ray.middle.z)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/field/bundle.h"
 #include "core/field/field.h"
 #include "core/field/window.h"
 #include "core/interval/interval.h"
@@ -35,8 +36,7 @@ struct Lanes {
     };
 
     std::size_t count = 0;
-    // Directions, and where the answers go: arrays with that room.
-    const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
+    RayColumns rays;  // arrays with that room; likewise where the answers go
     double *t_lo = nullptr, *t_hi = nullptr;
     alignas(64) std::array<float, room> fx, fy, fz;  // the directions, rounded
     alignas(64) std::array<std::int32_t, room> state;
@@ -56,7 +56,7 @@ struct Walked {
 // Whoever is given a stop leaves the lanes as they are once it is seen: their states then say
 // nothing.
 struct PacketSteps {
-    // `count`, dx, dy, dz stand; fills fx, fy, fz. State: walking.
+    // `count` and `rays` stand; fills fx, fy, fz. State: walking.
     void (*prepare)(Lanes& lanes);
 
     // Whether any of the lanes first .. end is in that state.

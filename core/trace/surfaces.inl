@@ -119,17 +119,15 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
     const std::size_t N = hn::Lanes(d);
     for (std::size_t first = 0; first < index.size(); first += N) {
         if (stop.after(N * window.fine.size)) return;
-        alignas(64) double dx[widest], dy[widest], dz[widest], at[widest];
+        Batch batch;
+        alignas(64) double at[widest];
         for (std::size_t k = 0; k < N; ++k) {
             const std::size_t item = std::min(first + k, index.size() - 1);
-            const std::uint32_t lane = index[item];
-            dx[k] = lanes.dx[lane];
-            dy[k] = lanes.dy[lane];
-            dz[k] = lanes.dz[lane];
+            batch.add(index[item], lanes);
             at[k] = t[item];
         }
         const V<D> m = hn::Load(d, at);
-        const Vec3v<D> p = place(window, {hn::Load(d, dx), hn::Load(d, dy), hn::Load(d, dz)}, m);
+        const Vec3v<D> p = place(window, rays_of(window, batch.rays(0)), m);
         const V<D> zero = hn::Zero(d);
         SurfaceSum sum{{zero, zero, zero}, {zero, zero, zero}, zero};
         M<D> defined = hn::FirstN(d, N);

@@ -56,8 +56,9 @@ void Method::surface_bundle(const Field& field, const ElementList& list, const R
 }
 
 ElementList elements_for(const RayBundle& rays, const Field& field, const ElementList& list) {
-    return reaching_elements(field, list,
-                             {rays.bundle.origin, rays.bundle.axis, rays.bundle.spread});
+    return reaching_elements(
+        field, list,
+        {rays.bundle.origin, rays.bundle.axis, rays.bundle.spread, rays.bundle.radius});
 }
 
 Vec3d outward_normal(const Vec3d& gradient) {

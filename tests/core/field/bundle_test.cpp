@@ -43,7 +43,7 @@ void for_random_windows(const tools::ElementKind& kind, const Visit& visit) {
         BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
         const double scale = along.threshold() / field.threshold;
-        const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
+        const std::array parts{whole_of(bundle)};
         const auto every = [](const BundlePart&, double, double) { return true; };
         const int no_end = std::numeric_limits<int>::max();
         along.for_windows(parts, {}, every, no_end, [&](Window& window, const BundlePart&) {
@@ -121,12 +121,13 @@ TEST(Bundle, RoundingAboutOneRayIsBoundedClosely) {
         const Bundle bundle{origin, unit(0.5 * random.in_cube(1) - origin), 0.005};
         BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-12));
-        const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
+        const std::array parts{whole_of(bundle)};
         const auto every = [](const BundlePart&, double, double) { return true; };
         const int no_end = std::numeric_limits<int>::max();
         along.for_windows(parts, {}, every, no_end, [&](const Window& window, const BundlePart&) {
             const Vec3d d = unit(bundle.axis + 0.0049 * unit(random.in_cube(1)));
-            const Window& piece = along.about_root(d, random.uniform(window.begin, window.end));
+            const Window& piece =
+                along.about_root(origin, d, random.uniform(window.begin, window.end));
             EXPECT_GE(piece.begin, window.begin);
             EXPECT_LE(piece.end, window.end);
             if (!piece.fine_usable) return true;
@@ -179,7 +180,7 @@ TEST(Bundle, FaintElementsAreOffByNoMoreThanTheirBounds) {
         const Bundle bundle{origin, unit(field.a(0) - origin), 0.02};
         BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), bundle, 1e-6));
-        const std::array parts{BundlePart{.axis = bundle.axis, .spread = bundle.spread}};
+        const std::array parts{whole_of(bundle)};
         const auto every = [](const BundlePart&, double, double) { return true; };
         along.for_windows(parts, {}, every, 1000, [&](Window& window, const BundlePart&) {
             along.complete(window);
@@ -213,14 +214,22 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
         const Field field = compile(scene);
         const Vec3d origin = 60.0 * unit(random.in_cube(1));
         const Vec3d axis = unit(-1.0 * origin);
-        std::vector<BundlePart> parts{
-            {.axis = axis, .spread = 0.45, .end = 48, .first_part = 1, .end_of_parts = 13}};
+        std::vector<BundlePart> parts{{.axis = axis,
+                                       .spread = 0.45,
+                                       .origin = origin,
+                                       .end = 48,
+                                       .first_part = 1,
+                                       .end_of_parts = 13}};
         std::vector<double> x, y, z;
         std::vector<Vec3d> targets;
         for (std::uint32_t k = 0; k < 12; ++k) {
             const Vec3d target = field.a(random.below(field.size()));
             const Vec3d part_axis = unit(target - origin + random.in_cube(1));
-            parts.push_back({.axis = part_axis, .spread = 0.05, .first = 4 * k, .end = 4 * k + 4});
+            parts.push_back({.axis = part_axis,
+                             .spread = 0.05,
+                             .origin = origin,
+                             .first = 4 * k,
+                             .end = 4 * k + 4});
             for (int ray = 0; ray < 4; ++ray) {
                 targets.push_back(target + random.in_cube(0.05));
                 const Vec3d d = unit(targets.back() - origin);
@@ -231,7 +240,7 @@ TEST(Bundle, PartsOfWideBundlesAreAsGoodAsTheirBounds) {
         }
         BundleWindows along;
         ASSERT_TRUE(along.build(field, all_elements(field), {origin, axis, 0.45}, 1e-6));
-        const Directions rays{x.data(), y.data(), z.data()};
+        const RayColumns rays{x.data(), y.data(), z.data()};
         struct Seen {
             double begin, end;
             std::uint32_t first_ray, end_of_rays;
@@ -313,7 +322,7 @@ TEST(Bundle, WhatIsSharedIsAsGoodAndLeavesNoTrace) {
         for (int tile = 0; tile < 4; ++tile) {
             const Vec3d tile_axis = unit(axis + 0.015 * unit(random.in_cube(1)));
             const Bundle bundle{origin, tile_axis, 0.012};
-            const std::array parts{BundlePart{.axis = tile_axis, .spread = bundle.spread}};
+            const std::array parts{whole_of(bundle)};
             const auto windows_of = [&](BundleWindows& by, const CommonBundle& in,
                                         const auto& visit) {
                 std::vector<Seen> seen;

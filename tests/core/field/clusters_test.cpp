@@ -187,11 +187,18 @@ TEST(Clusters, NoPlaceInsideIsWithoutAWindow) {
             const Vec3d origin = 5.0 * unit(random.in_cube(1));
             const Vec3d axis = unit(field.a(random.below(field.size())) - origin);
             constexpr double spread = 0.04;
-            std::vector<BundlePart> parts{
-                {.axis = axis, .spread = spread, .end = 1, .first_part = 1, .end_of_parts = 5}};
+            std::vector<BundlePart> parts{{.axis = axis,
+                                           .spread = spread,
+                                           .origin = origin,
+                                           .end = 1,
+                                           .first_part = 1,
+                                           .end_of_parts = 5}};
             for (int k = 0; k < 4; ++k) {
                 const Vec3d side = unit(cross(axis, random.in_cube(1)));
-                parts.push_back({.axis = unit(axis + 0.029 * side), .spread = 0.01, .end = 1});
+                parts.push_back({.axis = unit(axis + 0.029 * side),
+                                 .spread = 0.01,
+                                 .origin = origin,
+                                 .end = 1});
             }
             BundleWindows along;
             ASSERT_TRUE(along.build(field, all_clusters(field), {origin, axis, spread}, 1e-6));
@@ -290,11 +297,12 @@ TEST_P(ClustersOf, MembersOfWideClustersAreNoNearerThanTheirBounds) {
             return LocalStretch{axis,
                                 {},
                                 0,
+                                0,
                                 (t - half - middle) / field.unit,
                                 (t + half - middle) / field.unit,
                                 middle / field.unit};
         };
-        steps.bound_members(field, {origin, axis, 0, t - 2, t + 2}, middle, stretch(2), 1e-12,
+        steps.bound_members(field, {origin, axis, 0, 0, t - 2, t + 2}, middle, stretch(2), 1e-12,
                             clusters, &near);
         steps.bound_local(near, stretch(0.25), 1e-12, nearer);
         for (const LocalElements* found : {&near, &nearer}) {
@@ -337,7 +345,7 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
             const Bundle bundle{origin, unit(target - origin), spread};
             BundleWindows along;
             ASSERT_TRUE(along.build(field, all_clusters(field), bundle, 1e-6));
-            const std::array parts{BundlePart{.axis = bundle.axis, .spread = spread}};
+            const std::array parts{whole_of(bundle)};
             along.for_windows(
                 parts, {}, [](const BundlePart&, double, double) { return true; },
                 std::numeric_limits<int>::max(),
@@ -354,7 +362,7 @@ TEST(Clusters, StagesAreAsGoodAsTheirBounds) {
                     const Window &finer = along.full_mixed(), &refined = along.full();
                     tools::expect_stages_hold(field, finer, origin, d, t);
                     tools::expect_stages_hold(field, refined, origin, d, t);
-                    const Window& closer = along.about_root(d, t);
+                    const Window& closer = along.about_root(origin, d, t);
                     EXPECT_TRUE(closer.begin <= t && t <= closer.end);
                     tools::expect_stages_hold(field, closer, origin, d, t);
                     EXPECT_LE(closer.fine_bounds.above, finer.fine_bounds.above);

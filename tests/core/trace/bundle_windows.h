@@ -16,7 +16,7 @@ class BundleWindows {
     }
     // Until visit(window, part) returns false.
     template <class Wanted, class Visit>
-    void for_windows(std::span<const BundlePart> parts, const Directions& rays,
+    void for_windows(std::span<const BundlePart> parts, const RayColumns& rays,
                      const Wanted& wanted, int budget, const Visit& visit) {
         descent_.begin(parts, rays, budget);
         while (Window* const window = descent_.next(wanted)) {
@@ -27,8 +27,8 @@ class BundleWindows {
     void complete(Window& window) { descent_.field().complete(window); }
     const Window& full() { return descent_.field().full(); }
     const Window& full_mixed() { return descent_.field().full_mixed(); }
-    const Window& about_root(const Vec3d& direction, double t) {
-        return descent_.field().about_root(direction, t);
+    const Window& about_root(const Vec3d& origin, const Vec3d& direction, double t) {
+        return descent_.field().about_root(origin, direction, t);
     }
     [[nodiscard]] double unit() const { return descent_.field().unit(); }
     [[nodiscard]] double threshold() const { return descent_.field().threshold(); }

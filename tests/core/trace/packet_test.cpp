@@ -390,15 +390,12 @@ TEST(Packet, GuessesAreAsCloseAsTheCellsAsk) {
             BundleIsolations found;
             const auto lanes = std::make_unique<Lanes>();
             lanes->count = rays->count;
-            lanes->dx = rays->dx.data();
-            lanes->dy = rays->dy.data();
-            lanes->dz = rays->dz.data();
+            lanes->rays = rays->columns();
             lanes->t_lo = found.t_lo.data();
             lanes->t_hi = found.t_hi.data();
             packet_steps().prepare(*lanes);
-            const std::array parts{BundlePart{.axis = rays->bundle.axis,
-                                              .spread = rays->bundle.spread,
-                                              .end = static_cast<std::uint32_t>(rays->count)}};
+            std::array parts{whole_of(rays->bundle)};
+            parts[0].end = static_cast<std::uint32_t>(rays->count);
             const auto every = [](const BundlePart&, double, double) { return true; };
             const double T = along.threshold(), unit = along.unit();
             along.for_windows(parts, {}, every, 1000, [&](Window& window, const BundlePart& all) {
