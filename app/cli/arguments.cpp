@@ -12,6 +12,7 @@
 #include "app/cli/output_names.h"
 #include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
+#include "core/render/sampled_picture.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -39,6 +40,28 @@ int read_count(std::string_view option, std::string_view text, int most) {
     int value = 0;
     if (!read(text, value) || value < 1 || value > most) {
         throw wrong_value(option, text, "a whole number from 1 to " + std::to_string(most));
+    }
+    return value;
+}
+
+int read_samples(std::string_view text) {
+    int value = 0;
+    const bool is_number = read(text, value);
+    for (int side = 1; is_number && side <= most_samples_a_side; ++side)
+        if (side * side == value) return side;
+    throw wrong_value("--samples", text, "one of 1, 4, 9, 16, 25, 36, 49, 64");
+}
+
+Stereo read_stereo(std::string_view text) {
+    for (std::size_t kind = 0; kind < stereo_words.size(); ++kind)
+        if (text == stereo_words[kind]) return static_cast<Stereo>(kind + 1);
+    throw wrong_value("--stereo", text, "side-by-side or red-cyan");
+}
+
+double read_eyes(std::string_view text) {
+    double value = 0;
+    if (!read(text, value) || !(value > 0 && std::isfinite(value))) {
+        throw wrong_value("--eyes", text, "a distance greater than 0, and finite");
     }
     return value;
 }
@@ -145,6 +168,18 @@ void add_render_options(CLI::App& call, RenderArguments& render) {
     call.add_option("--answers", render.answers, "each pixel's ray and answer, one a line")
         ->type_name("OUT.csv");
     call.add_option("--stats", render.statistics, "times and counts")->type_name("OUT.json");
+    add_value(call, "--samples", "N",
+              "the mean of so many samples a pixel, a square of 1 to 8; default 1. --answers and "
+              "--depth have all of them traced, and --answers is of the larger picture",
+              [&render](const std::string& text) { render.samples = read_samples(text); });
+    add_value(call, "--stereo", "KIND",
+              "for two eyes: side-by-side, twice as wide, or red-cyan. --answers has the left eye's "
+              "picture first, --depth both side by side",
+              [&render](const std::string& text) { render.stereo = read_stereo(text); });
+    add_value(call, "--eyes", "D",
+              "how far apart the eyes are, with --stereo; default: a thirtieth of the target's "
+              "distance",
+              [&render](const std::string& text) { render.eyes = read_eyes(text); });
     add_value(call, "--repeat", "N",
               "render N times, everything built anew; --stats gives the medians",
               [&render](const std::string& text) {

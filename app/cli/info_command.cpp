@@ -127,8 +127,12 @@ std::string text_of(const std::string& file, const Scene& scene, const Field& fi
     text += "threshold  " + number_text(scene.threshold) + "\n";
     text += "box        " + text_of(field.box) + "\n";
     text += "camera     position " + text_of(camera.position) + ", target " +
-            text_of(camera.target) + ", up " + text_of(camera.up) + ", fov " +
-            number_text(camera.fov) + (scene.camera ? "" : " (framed for 1280x720)") + "\n";
+            text_of(camera.target) + ", up " + text_of(camera.up) +
+            (camera.projection == Camera::Projection::orthographic
+                 ? ", orthographic, height " + number_text(height_of(camera))
+                 : ", fov " + number_text(camera.fov)) +
+            (scene.camera ? "" : " (framed for 1280x720)") + "\n";
+    for (const SavedView& view : scene.views) text += "view       " + printable(view.name) + "\n";
     text += "lights     " +
             std::to_string(scene.lights ? scene.lights->size() : default_lights().size()) +
             (scene.lights ? "" : " (the default ones)") + "\n";
@@ -172,6 +176,12 @@ std::string json_of(const std::string& file, const Scene& scene, const Field& fi
                       {"up", json_of(camera.up)},
                       {"fov", camera.fov},
                       {"framed", !scene.camera}};
+    if (camera.projection == Camera::Projection::orthographic) {
+        json["camera"]["projection"] =
+            projection_words[static_cast<std::size_t>(camera.projection)];
+        json["camera"]["height"] = height_of(camera);
+    }
+    json["views"] = scene.views.size();
     json["lights"] = scene.lights ? scene.lights->size() : default_lights().size();
     json["skipped"] = json_of_skips(scene);
     // The bytes of a path need not be UTF-8, which JSON is.

@@ -14,6 +14,7 @@
 #include "core/render/image_file.h"
 #include "core/render/render.h"
 #include "core/render/statistics.h"
+#include "core/render/stereo.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "core/scene/text.h"
@@ -33,7 +34,7 @@ double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// SeenSurfaces at before the work begins: what cannot be written is said at once.
+// Looked at before the work begins: what cannot be written is said at once.
 struct Outputs {
     std::optional<Output> picture, depth, answers, statistics;
 
@@ -56,48 +57,131 @@ struct Outputs {
     }
 };
 
-// A frame from its scene, with what it took.
+// One eye's picture, or the only one's.
 struct Rendering {
     Picture picture;
+    // Of samples all of which are traced, the larger picture's.
     std::unique_ptr<Canvas> canvas;
+    std::unique_ptr<SampledPicture> sampled;  // of several samples a pixel
     JobReport report;
-    Seconds seconds;  // compile, trace, shade and total of this frame
+
+    [[nodiscard]] const Rgba8* color() const {
+        return sampled ? &sampled->color[0] : &canvas->frame.color[0];
+    }
+    [[nodiscard]] std::vector<double> depth() const {
+        if (!sampled) return depth_of(canvas->frame);
+        return {&sampled->depth[0], &sampled->depth[0] + sampled->depth.size()};
+    }
 };
 
-// On the canvas of the frame before, where there is one.
-Rendering render_once(const Scene& scene, const RenderArguments& arguments, Task task,
-                      std::unique_ptr<Canvas> canvas, const std::string& label,
-                      Progress& progress) {
-    const Clock::time_point start = Clock::now();
-    Rendering rendering;
-    try {
-        rendering.picture =
-            make_picture(scene, arguments.width, arguments.height, *arguments.work.method,
-                         arguments.work.options, arguments.work.threads);
-    } catch (const Error& fault) {
-        throw camera_fault(scene, arguments.scene, fault);
-    }
-    rendering.seconds.compile = seconds_since(start);
+// A picture from its scene, of one eye or two, with what it took.
+struct Run {
+    std::vector<Rendering> eyes;
+    Seconds seconds;  // compile, trace, shade and total
+};
 
-    const Clock::time_point compiled = Clock::now();
-    rendering.canvas = canvas ? std::move(canvas)
-                              : std::make_unique<Canvas>(arguments.width, arguments.height,
-                                                         !arguments.answers.empty());
-    rendering.canvas->forget();
+// What --answers writes is of the larger picture: all of it is traced.
+bool traces_larger(const RenderArguments& arguments) {
+    return arguments.samples > 1 && !arguments.answers.empty();
+}
+
+// On the canvases of the rendering before, where there are any.
+void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
+                const std::string& label, Progress& progress) {
+    const int times = traces_larger(arguments) ? arguments.samples : 1;
+    if (!eye.canvas) {
+        eye.canvas =
+            std::make_unique<Canvas>(arguments.width * times, arguments.height * times,
+                                     !arguments.answers.empty());
+    }
+    eye.canvas->forget();
     JobSettings settings;
     settings.threads = arguments.work.threads;
     settings.task = task;
-    FrameJob job(rendering.picture, *rendering.canvas, settings);
+    if (arguments.samples > 1 && times == 1) {
+        if (!eye.sampled) {
+            eye.sampled = std::make_unique<SampledPicture>(*eye.canvas, arguments.samples,
+                                                           !arguments.depth.empty());
+        }
+        settings.task = Task::sample;
+        settings.sampled = eye.sampled.get();
+    }
+    FrameJob job(eye.picture, *eye.canvas, settings);
     while (!job.wait_for(std::chrono::milliseconds(50))) {
         stop_if_interrupted();  // the job cancels itself on the way out
         progress.show(label + std::to_string(static_cast<int>(100 * job.progress())) + " %");
     }
-    rendering.report = job.finish();
-    const double worked = seconds_since(compiled);
-    rendering.seconds.shade = worked * rendering.report.shade_share;
-    rendering.seconds.trace = worked - rendering.seconds.shade;
-    rendering.seconds.total = seconds_since(start);
-    return rendering;
+    eye.report = job.finish();
+    if (times > 1) {
+        eye.sampled = std::make_unique<SampledPicture>(
+            mean_of(eye.picture, *eye.canvas, arguments.samples));
+    }
+}
+
+Run render_once(const Scene& scene, const RenderArguments& arguments, Task task,
+                std::vector<Rendering> eyes, const std::string& label, Progress& progress) {
+    const Clock::time_point start = Clock::now();
+    Run run{std::move(eyes), {}};
+    run.eyes.resize(arguments.stereo == Stereo::none ? 1 : 2);
+    try {
+        const Picture picture =
+            make_picture(scene, arguments.width, arguments.height, *arguments.work.method,
+                         arguments.work.options, arguments.work.threads);
+        for (Rendering& eye : run.eyes) eye.picture = picture;
+        if (arguments.stereo != Stereo::none) {
+            const double apart =
+                arguments.eyes.value_or(usual_eye_distance(picture.view.camera));
+            run.eyes[0].picture.view = eye_of(picture.view, Eye::left, apart);
+            run.eyes[1].picture.view = eye_of(picture.view, Eye::right, apart);
+        }
+    } catch (const Error& fault) {
+        throw camera_fault(scene, arguments.scene, fault);
+    }
+    run.seconds.compile = seconds_since(start);
+
+    for (std::size_t k = 0; k < run.eyes.size(); ++k) {
+        const Clock::time_point compiled = Clock::now();
+        const std::string eye_label =
+            run.eyes.size() == 1 ? label : label + (k == 0 ? "left eye: " : "right eye: ");
+        render_eye(run.eyes[k], arguments, task, eye_label, progress);
+        const double worked = seconds_since(compiled);
+        const double shading = worked * run.eyes[k].report.shade_share;
+        run.seconds.shade += shading;
+        run.seconds.trace += worked - shading;
+    }
+    run.seconds.total = seconds_since(start);
+    return run;
+}
+
+std::string picture_bytes(const Run& run, const RenderArguments& arguments) {
+    const int width = arguments.width, height = arguments.height;
+    const Rgba8* const left = run.eyes[0].color();
+    switch (arguments.stereo) {
+        case Stereo::none:
+            return png_bytes(PictureBytes{width, height, left});
+        case Stereo::side_by_side:
+            return png_bytes(PictureBytes{
+                2 * width, height,
+                side_by_side(left, run.eyes[1].color(), width, height).data()});
+        case Stereo::red_cyan:
+            return png_bytes(PictureBytes{
+                width, height, red_cyan(left, run.eyes[1].color(), width, height).data()});
+    }
+    return {};
+}
+
+// Of two eyes side by side.
+std::string depth_file(const Run& run, const RenderArguments& arguments) {
+    const auto width = static_cast<std::size_t>(arguments.width),
+               height = static_cast<std::size_t>(arguments.height);
+    std::vector<double> all(run.eyes.size() * width * height);
+    for (std::size_t k = 0; k < run.eyes.size(); ++k) {
+        const std::vector<double> depth = run.eyes[k].depth();
+        for (std::size_t j = 0; j < height; ++j) {
+            std::copy_n(&depth[j * width], width, &all[(j * run.eyes.size() + k) * width]);
+        }
+    }
+    return depth_bytes(static_cast<int>(run.eyes.size() * width), arguments.height, all.data());
 }
 
 Seconds medians_of(const std::vector<Seconds>& runs) {
@@ -157,22 +241,23 @@ void run(const RenderArguments& arguments) {
     const bool shaded = outputs.picture || !(outputs.depth || outputs.answers);
     const Task task = shaded ? Task::trace_and_shade : Task::trace;
     std::vector<Seconds> runs;
-    Rendering rendering;
-    for (int run = 1; run <= arguments.repeat; ++run) {
+    Run run;
+    for (int number = 1; number <= arguments.repeat; ++number) {
         const std::string label =
             arguments.repeat == 1
                 ? ""
-                : std::to_string(run) + "/" + std::to_string(arguments.repeat) + ": ";
+                : std::to_string(number) + "/" + std::to_string(arguments.repeat) + ": ";
         stop_if_interrupted();  // a picture may be done before it is looked for again
-        rendering =
-            render_once(scene, arguments, task, std::move(rendering.canvas), label, progress);
-        runs.push_back(rendering.seconds);
+        run = render_once(scene, arguments, task, std::move(run.eyes), label, progress);
+        runs.push_back(run.seconds);
     }
 
     const Clock::time_point rendered = Clock::now();
-    if (outputs.picture) outputs.picture->write(png_bytes(rendering.canvas->frame));
-    if (outputs.depth) outputs.depth->write(depth_bytes(rendering.canvas->frame));
-    if (outputs.answers) write_answers(*outputs.answers, rendering, progress);
+    if (outputs.picture) outputs.picture->write(picture_bytes(run, arguments));
+    if (outputs.depth) outputs.depth->write(depth_file(run, arguments));
+    if (outputs.answers) {
+        for (const Rendering& eye : run.eyes) write_answers(*outputs.answers, eye, progress);
+    }
 
     RenderStatistics statistics;
     statistics.width = arguments.width;
@@ -180,17 +265,22 @@ void run(const RenderArguments& arguments) {
     statistics.threads = arguments.work.threads;
     statistics.method = arguments.work.method->name();
     statistics.options = arguments.work.options;
-    statistics.camera = rendering.picture.view.camera;
+    statistics.camera = run.eyes[0].picture.view.camera;
+    statistics.samples = arguments.samples * arguments.samples;
     statistics.seconds = medians_of(runs);
     statistics.seconds.load = load_seconds;
     statistics.seconds.write = seconds_since(rendered);
     statistics.seconds.total += load_seconds + statistics.seconds.write;
     statistics.repeats = arguments.repeat;
-    statistics.pixels = pixel_statistics(*rendering.canvas);
-    statistics.counts = rendering.report.counts;
     statistics.elements = scene.elements.size();
-    statistics.visible_elements = rendering.picture.field->size();
-    statistics.reached_elements = rendering.report.elements_reached;
+    statistics.visible_elements = run.eyes[0].picture.field->size();
+    for (const Rendering& eye : run.eyes) {
+        statistics.pixels += eye.sampled ? pixel_statistics(*eye.canvas, *eye.sampled)
+                                         : pixel_statistics(*eye.canvas);
+        statistics.counts += eye.report.counts;
+        statistics.reached_elements =
+            std::max(statistics.reached_elements, eye.report.elements_reached);
+    }
     if (outputs.statistics) outputs.statistics->write(statistics_json(statistics));
     outputs.commit();
     progress.leave(summary(statistics));

@@ -207,6 +207,24 @@ void BundleField::bound_curvature(const Stretch& on, Bounded& bounded) const {
     bounded.kinked_slope = bends.kinked_slope;
 }
 
+AcrossSums BundleField::bound_across(const BundlePart& part, double t0, double t1,
+                                     const Bounded& bounded) const {
+    const double sums = 1 + static_cast<double>(bounded.size() + 64) * 0x1p-22;
+    AcrossSums across;
+    double per_unit = 1;
+    if (bounded.is_local) {
+        per_unit = 1 / unit_;
+        across = bundle_steps().bound_across_local(
+            bounded.local, local_stretch(part, bounded.local_middle, t0, t1));
+    } else {
+        across = bundle_steps().bound_across(*field_, stretch(part, t0, t1), scale_,
+                                             bounded.active);
+    }
+    across.curvature *= sums * per_unit * per_unit;
+    across.joined_slope *= sums * per_unit;
+    return across;
+}
+
 bool BundleField::is_too_curved(const Bounded& bounded, double length) const {
     return length > least_length * least_width_ &&
            (std::max(bounded.rise, bounded.fall) * length * length > curvature_limit * threshold_ ||

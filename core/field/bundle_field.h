@@ -87,6 +87,14 @@ class BundleField {
     // Whether a window so long would need more steps than two of half the length.
     [[nodiscard]] bool is_too_curved(const Bounded& bounded, double length) const;
 
+    // And how it changes across the rays, per scene unit and its square.
+    [[nodiscard]] AcrossSums bound_across(const BundlePart& part, double t0, double t1,
+                                          const Bounded& bounded) const;
+    // The same of the window that is open.
+    [[nodiscard]] AcrossSums bound_across() const {
+        return bound_across(opened_part_, opened_on_.begin, opened_on_.end, *opened_);
+    }
+
     // The window of what was bounded so, which stays where it is.
     Window& open(const Bounded& bounded, const BundlePart& part, double t0, double t1);
     // One on which nothing is known, and which begins at 0.

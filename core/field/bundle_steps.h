@@ -46,6 +46,13 @@ struct CurvatureSums {
     double kinked_slope = 0;    // and of |f'| of the elements whose f'' has none
 };
 
+// How the field changes across the rays of a bundle, for rays close together: over all places of the
+// bundle and all directions.
+struct AcrossSums {
+    double curvature = 0;     // of bounds of the second derivatives, of elements that have them
+    double joined_slope = 0;  // of bounds of |grad F| of joined elements
+};
+
 // Of |F|: what may be above the first enters a window among the strong entries, else what may be
 // above the second among the weak ones.
 struct CoarseCuts {
@@ -76,6 +83,11 @@ struct BundleSteps {
     CurvatureSums (*bound_curvature)(const Field& field, const Stretch& stretch, double scale,
                                      ActiveElements& active);
 
+    // Bounds across the rays, of the elements on the stretch that they were bounded on. What is neither
+    // smooth nor joined is in StageSums::slope.
+    AcrossSums (*bound_across)(const Field& field, const Stretch& stretch, double scale,
+                               const ActiveElements& active);
+
     // Those elements with their bounds, in units (Field::unit), relative to the place at `middle`
     // on the axis of the `bundle`, not of one of its parts.
     void (*enter_local)(const Field& field, const Stretch& bundle, double middle,
@@ -95,6 +107,7 @@ struct BundleSteps {
     PeakSums (*bound_local)(const LocalElements& candidates, const LocalStretch& stretch,
                             double cut, LocalElements& kept);
     CurvatureSums (*bound_curvature_local)(LocalElements& near, const LocalStretch& stretch);
+    AcrossSums (*bound_across_local)(const LocalElements& near, const LocalStretch& stretch);
 
     // The window's coarse entries, in units.
     StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale,

@@ -18,6 +18,15 @@ struct BendLanes {
     V<Tag> rise, fall, kinked_slope;
 };
 
+// |F'| along a ray of speed 1, at most.
+template <KernelKind kind, class Tag, Shape shape>
+HWY_INLINE V<Tag> steepest(Tag d, const Seen<Tag, shape>& e, V<Tag> least, V<Tag> peak) {
+    using Margin = Margins<hn::TFromD<Tag>>;
+    return hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
+                   hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),
+                           LanesOf<kind>::slope(d, least, peak)));
+}
+
 // Adds the bends of some elements; returns the circles' bound of 1 / rho.
 template <KernelKind kind, class Tag, Shape shape>
 HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
@@ -36,9 +45,7 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
         outward = turning.outward;
         smooth = hn::And(smooth, hn::Ge(inverse, zero));
         // no f'' is known of the others
-        const V<Tag> slope = hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
-                                     hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),
-                                             LanesOf<kind>::slope(d, least, peak)));
+        const V<Tag> slope = steepest<kind>(d, e, least, peak);
         sums.kinked_slope =
             hn::Add(sums.kinked_slope, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
     }
@@ -50,6 +57,111 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
     sums.rise = hn::MulAdd(hn::IfThenElse(adds, bend.rise, bend.fall), weight, sums.rise);
     sums.fall = hn::MulAdd(hn::IfThenElse(adds, bend.fall, bend.rise), weight, sums.fall);
     return inverse;
+}
+
+// q is 1 / w at most as steep as any distance, w the least width, in every direction; and s'' is bounded
+// in every direction alike, since kinks were looked for in a ball about each place of the axis.
+template <KernelKind kind, class Tag, Shape shape>
+HWY_INLINE V<Tag> curvature_across(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                   M<Tag> valid, V<Tag> least, V<Tag> most, V<Tag> peak) {
+    using Margin = Margins<hn::TFromD<Tag>>;
+    const Tag d;
+    M<Tag> smooth = valid;
+    V<Tag> outward = hn::Zero(d);
+    if constexpr (SkeletonOf<shape>::has_kinks) {
+        const Turning<Tag> turning =
+            LanesOfShape<shape>::turning(e, s, error_of(d, e.magnitude, s), most);
+        outward = turning.outward;
+        smooth = hn::And(smooth, hn::Ge(turning.inverse, hn::Zero(d)));
+    }
+    // x^2 <= s, and no kernel is bent beyond s = 2 by what it is not bent by before
+    const CurvatureRange<Tag> everywhere{least, least, hn::Max(least, constant(d, 2)), hn::Zero(d),
+                                         false};
+    const Bend<Tag> bend = LanesOf<kind>::bound_curvature(d, everywhere, peak, outward);
+    const V<Tag> weight =
+        hn::Mul(hn::Mul(hn::Abs(e.strength), e.inverse_square), hn::Set(d, Margin::more));
+    return hn::IfThenElseZero(smooth, hn::Mul(hn::Max(bend.rise, bend.fall), weight));
+}
+
+// The same for lanes of a group, from `load(i)` and their bounds; `source` as in joins_of.
+template <Shape shape, KernelKind kind, class Tag, class Load, class Column, class Source>
+HWY_INLINE void add_across(Tag d, const Reach<hn::TFromD<Tag>>& reach, std::size_t first,
+                           std::size_t end, const Load& load, const Column& bounds,
+                           const Source& source, AcrossSums& sums) {
+    V<Tag> curvature = hn::Zero(d);
+    double most_of_parts = 0;
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const Seen<Tag, shape> e = load(i);
+        const auto [least, most, peak] = bounds(i);
+        const M<Tag> valid = hn::FirstN(d, end - i);
+        if constexpr (joined<shape>) {
+            alignas(64) hn::TFromD<Tag> of_lane[hn::MaxLanes(Tag())];
+            hn::Store(steepest<kind>(d, e, least, peak), d, of_lane);
+            const std::size_t count = std::min(hn::Lanes(d), end - i);
+            const std::uint32_t joins = joins_of(i, end, count, source);
+            for (std::size_t k = 0; k < count; ++k) {
+                most_of_parts = std::max(most_of_parts, double{of_lane[k]});
+                if ((joins >> k & 1) != 0) continue;
+                sums.joined_slope += most_of_parts;
+                most_of_parts = 0;
+            }
+        } else {
+            curvature =
+                hn::Add(curvature, curvature_across<kind>(e, reach, valid, least, most, peak));
+        }
+    }
+    sums.curvature += sum_of(curvature);
+}
+
+template <class Vector>
+struct BoundsOfLanes {
+    Vector least, most, peak;
+};
+
+AcrossSums bound_across(const Field& field, const Stretch& stretch, double scale,
+                        const ActiveElements& active) {
+    AcrossSums sums;
+    const D d;
+    const Reach<double> reach = reach_of(stretch);
+    for_groups_of(active.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                  std::size_t end) HWY_ATTR {
+        add_across<shape, kind>(
+            d, reach, first, end,
+            [&](std::size_t i) HWY_ATTR {
+                return seen_in_field<shape>(field, stretch, scale,
+                                            hn::LoadU(I(), &active.element[i]));
+            },
+            [&](std::size_t i) HWY_ATTR {
+                return BoundsOfLanes<V<D>>{hn::LoadU(d, &active.least[i]),
+                                           hn::LoadU(d, &active.most[i]),
+                                           hn::LoadU(d, &active.peak[i])};
+            },
+            [&](std::size_t k) {
+                return field.source[static_cast<std::size_t>(active.element[k])];
+            },
+            sums);
+    });
+    return sums;
+}
+
+AcrossSums bound_across_local(const LocalElements& near, const LocalStretch& stretch) {
+    AcrossSums sums;
+    const F d;
+    const Reach<float> reach = reach_of(stretch, near);
+    for_groups_of(near.first, [&]<Shape shape, KernelKind kind>(std::size_t, std::size_t first,
+                                                                std::size_t end) HWY_ATTR {
+        add_across<shape, kind>(
+            d, reach, first, end,
+            [&](std::size_t i)
+                HWY_ATTR { return seen_local<shape>(near, near.numbers, reach, i); },
+            [&](std::size_t i) HWY_ATTR {
+                return BoundsOfLanes<V<F>>{hn::LoadU(d, &near.least[i]),
+                                           hn::LoadU(d, &near.most[i]),
+                                           hn::LoadU(d, &near.peak[i])};
+            },
+            [&](std::size_t k) { return near.source[k]; }, sums);
+    });
+    return sums;
 }
 
 template <class Tag>

@@ -80,12 +80,13 @@ Bundle bundle_of(const Vec3d& origin, const std::array<Vec3d, 4>& corners) {
 
 }  // namespace
 
-TileBundles tile_bundles(const View& view, int width, int height, int i, int j) {
-    // The corners of 4 x 4 squares stand at 0, 3, 4, 7, .. 15.
+TileBundles tile_bundles(const View& view, int width, int height, int i, int j, int samples) {
+    // The corners of 4 x 4 squares stand at 0, 3, 4, 7, .. 15; of more samples likewise.
     constexpr std::size_t edges = 8;
     std::array<double, edges> of_column, of_row;
     for (std::size_t n = 0; n < edges; ++n) {
-        const int edge = static_cast<int>(4 * (n / 2) + 3 * (n % 2));
+        const int side = 4 * samples;
+        const int edge = side * static_cast<int>(n / 2) + (side - 1) * static_cast<int>(n % 2);
         of_column[n] = plane_u(view, width, height, i + edge);
         of_row[n] = plane_v(view, height, j + edge);
     }

@@ -18,6 +18,8 @@ void primary_directions(const View& view, std::size_t count, const double* u, co
 // quarters, and of the four quarters of each of these, row by row. Cheaper than bundle_around of
 // each, and as good. Proof: camera_lanes.cpp.
 using TileBundles = std::array<Bundle, 1 + 4 + 16>;
-[[nodiscard]] TileBundles tile_bundles(const View& view, int width, int height, int i, int j);
+// `samples`: of a tile of so many times as many columns and rows.
+[[nodiscard]] TileBundles tile_bundles(const View& view, int width, int height, int i, int j,
+                                       int samples = 1);
 
 }  // namespace ivory

@@ -50,13 +50,13 @@ struct Strip {
 
 // Each byte less that of the pixel to the left (the filter `Sub`), then deflated as a part of a
 // stream that the next strip goes on with at a whole byte. False: out of memory.
-bool pack(const Frame& frame, Strip& strip, bool last) {
-    const auto width = static_cast<std::size_t>(frame.width);
+bool pack(const PictureBytes& picture, Strip& strip, bool last) {
+    const auto width = static_cast<std::size_t>(picture.width);
     std::vector<unsigned char> filtered(static_cast<std::size_t>(strip.end - strip.begin) *
                                         (3 * width + 1));
     unsigned char* out = filtered.data();
     for (int j = strip.begin; j < strip.end; ++j) {
-        const Rgba8* const row = &frame.color[frame.at(0, j)];
+        const Rgba8* const row = picture.color + static_cast<std::size_t>(j) * width;
         *out++ = PNG_FILTER_VALUE_SUB;
         Rgba8 left{0, 0, 0, 0};
         for (std::size_t i = 0; i < width; ++i) {
@@ -90,19 +90,19 @@ bool pack(const Frame& frame, Strip& strip, bool last) {
 }
 
 // The strips do not depend on the number of workers.
-std::vector<Strip> packed_strips(const Frame& frame) {
+std::vector<Strip> packed_strips(const PictureBytes& picture) {
     std::vector<Strip> strips;
-    for (int j = 0; j < frame.height; j += Strip::rows) {
+    for (int j = 0; j < picture.height; j += Strip::rows) {
         Strip& strip = strips.emplace_back();
         strip.begin = j;
-        strip.end = std::min(j + Strip::rows, frame.height);
+        strip.end = std::min(j + Strip::rows, picture.height);
     }
     std::atomic<std::size_t> next{0};
     std::atomic<bool> failed{false};
     const auto work = [&] {
         try {
             for (std::size_t k = next++; k < strips.size(); k = next++) {
-                if (!pack(frame, strips[k], k + 1 == strips.size())) failed = true;
+                if (!pack(picture, strips[k], k + 1 == strips.size())) failed = true;
             }
         } catch (const std::bad_alloc&) {
             failed = true;
@@ -133,7 +133,7 @@ std::vector<Strip> packed_strips(const Frame& frame) {
 }
 
 // False: libpng gave up. Holds nothing that a longjmp would leave undestroyed.
-bool write_png(const Frame& frame, const std::vector<Strip>& strips, PngOutput& output) {
+bool write_png(const PictureBytes& picture, const std::vector<Strip>& strips, PngOutput& output) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, silent);
     if (png == nullptr) return false;
     png_infop info = png_create_info_struct(png);
@@ -142,8 +142,8 @@ bool write_png(const Frame& frame, const std::vector<Strip>& strips, PngOutput& 
         return false;
     }
     png_set_write_fn(png, &output, append, flush);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(frame.width),
-                 static_cast<png_uint_32>(frame.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width),
+                 static_cast<png_uint_32>(picture.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
@@ -169,28 +169,43 @@ float nearest_float(double value) {
 
 }  // namespace
 
-std::string png_bytes(const Frame& frame) {
-    const std::vector<Strip> strips = packed_strips(frame);
+std::string png_bytes(const PictureBytes& picture) {
+    const std::vector<Strip> strips = packed_strips(picture);
     PngOutput output;
-    const bool written = write_png(frame, strips, output);
+    const bool written = write_png(picture, strips, output);
     if (output.out_of_memory) throw std::bad_alloc();
     if (!written) throw Error("the picture cannot be made into a PNG; try a smaller one");
     return std::move(output.bytes);
 }
 
-std::string depth_bytes(const Frame& frame) {
+std::string png_bytes(const Frame& frame) {
+    return png_bytes(PictureBytes{frame.width, frame.height, &frame.color[0]});
+}
+
+std::vector<double> depth_of(const Frame& frame) {
+    std::vector<double> depth(frame.size());
+    for (std::size_t p = 0; p < depth.size(); ++p) {
+        depth[p] = possibly_hit(frame.status[p]) ? midpoint(frame.t(p)) : infinity<double>;
+    }
+    return depth;
+}
+
+std::string depth_bytes(int width, int height, const double* depth) {
+    const auto across = static_cast<std::size_t>(width), down = static_cast<std::size_t>(height);
     std::string bytes =
-        "Pf\n" + std::to_string(frame.width) + " " + std::to_string(frame.height) + "\n-1.0\n";
-    bytes.reserve(bytes.size() + 4 * frame.size());
-    for (int j = frame.height - 1; j >= 0; --j) {
-        for (int i = 0; i < frame.width; ++i) {
-            const std::size_t p = frame.at(i, j);
-            append_little_endian(bytes, possibly_hit(frame.status[p])
-                                            ? nearest_float(midpoint(frame.t(p)))
-                                            : std::numeric_limits<float>::infinity());
+        "Pf\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
+    bytes.reserve(bytes.size() + 4 * across * down);
+    for (std::size_t j = down; j-- > 0;) {
+        for (std::size_t i = 0; i < across; ++i) {
+            append_little_endian(bytes, nearest_float(depth[j * across + i]));
         }
     }
     return bytes;
+}
+
+std::string depth_bytes(const Frame& frame) {
+    const std::vector<double> depth = depth_of(frame);
+    return depth_bytes(frame.width, frame.height, depth.data());
 }
 
 }  // namespace ivory

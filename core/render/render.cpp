@@ -21,7 +21,10 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t least_first_pixels = 128;
 
 std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
-    if (settings.order != Order::coarse_to_fine || settings.task == Task::shade) return {1};
+    if (settings.order != Order::coarse_to_fine || settings.task == Task::shade ||
+        settings.task == Task::sample) {
+        return {1};
+    }
     int stride = TileGrid::block_side;
     for (std::size_t squares = tiles / 16; stride > 8 && squares < least_first_pixels;
          squares *= 4) {
@@ -49,7 +52,8 @@ class FrameJob::Work {
         : picture_(std::move(picture)),
           canvas_(canvas),
           settings_(std::move(settings)),
-          lists_(picture_, canvas, stop_),
+          lists_(picture_, canvas, stop_,
+                 settings_.task == Task::sample ? settings_.sampled->samples : 1),
           tile_begun_(canvas.grid.tiles.size()),
           passes_done_(canvas.grid.blocks.size()) {
         plan();
@@ -233,7 +237,26 @@ class FrameJob::Work {
         return true;
     }
 
+    bool sample_block(std::size_t block, TileWorker& worker) {
+        if (!lists_.make_block(block, worker.counts)) return false;
+        SampleWorker& sampler = worker.sampler(*settings_.sampled);
+        sampler.enter_block(block);
+        bool done = true;
+        for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
+            if (!done || !selected(tile)) return;
+            const ElementList list = lists_.of_tile(tile, worker.counts);
+            done = !stopped() && sampler.sample(tile, list);
+            if (!done) return;
+            ++worker.tiles;
+            if (!list.certainly_empty) worker.mark_reached(list);
+            if (settings_.on_tile) settings_.on_tile({tile, tiles().rect(tile), 1, tile_side});
+        });
+        lists_.forget_block(block);
+        return done;
+    }
+
     bool take_block(std::size_t block, std::size_t pass, TileWorker& worker) {
+        if (settings_.task == Task::sample) return sample_block(block, worker);
         const PixelRect rect = blocks().rect(block);
         worker.leave_block();
         if (pass == 0 && !list_tiles_of(block, worker)) return false;
@@ -300,7 +323,10 @@ class FrameJob::Work {
         if (!first && strides_[pass] >= tile_side) return true;  // it has its one pixel
         tile_begun_[index] = 1;
         if (first) {
-            if (!tile.has_list) lists_.make_tile(index, worker.counts);
+            if (!tile.has_list) {
+                tile.list = lists_.of_tile(index, worker.counts);
+                tile.has_list = true;
+            }
             ++worker.tiles;
             if (settings_.task != Task::shade && !tile.list.certainly_empty) {
                 worker.mark_reached(tile.list);

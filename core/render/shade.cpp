@@ -8,6 +8,7 @@ Lighting make_lighting(const Scene& scene, const View& view) {
     Lighting lighting;
     lighting.zenith = view.top;
     lighting.background = to_srgb(scene.background);
+    lighting.background_light = scene.background;
     for (const Light& light : scene.lights ? *scene.lights : default_lights()) {
         const Vec3d d = unit(light.direction);
         lighting.lamps.push_back({light.attached_to_camera

@@ -94,20 +94,21 @@ HWY_INLINE hn::Vec<I> byte_of(V linear, const SrgbTable& table) {
     return hn::Add(byte, hn::IfThenZeroElse(comes_next, set(1)));
 }
 
-void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
-           std::span<Rgba8> colors) {
+// Calls put(k, count, light, none_there) for vectors of pixels, or background(k, count) where none of
+// them has a surface.
+template <class Put, class Background>
+HWY_INLINE void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
+                      std::size_t size, const Put& put, const Background& background) {
     const D d;
-    const I di;
     const std::size_t N = hn::Lanes(d);
-    const SrgbTable& table = srgb_table();
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), half = hn::Set(d, 0.5F);
-    for (std::size_t k = 0; k < colors.size(); k += N) {
-        const std::size_t count = std::min(N, colors.size() - k);
+    for (std::size_t k = 0; k < size; k += N) {
+        const std::size_t count = std::min(N, size - k);
         Vec3v normal{hn::LoadU(d, &looks.nx[k]), hn::LoadU(d, &looks.ny[k]),
                      hn::LoadU(d, &looks.nz[k])};
         const auto none_there = hn::IsNaN(normal.x);
         if (hn::CountTrue(d, hn::And(none_there, hn::FirstN(d, count))) == count) {
-            std::fill_n(&colors[k], count, lighting.background);
+            background(k, count);
             continue;
         }
         const Vec3v to_viewer{hn::Neg(rounded(&rays.dx[k])), hn::Neg(rounded(&rays.dy[k])),
@@ -162,17 +163,7 @@ void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
             light = {add(light.x, color.x, lamp.radiance.x), add(light.y, color.y, lamp.radiance.y),
                      add(light.z, color.z, lamp.radiance.z)};
         }
-        const auto red = byte_of(shoulder(light.x), table);
-        const auto green = hn::ShiftLeft<8>(byte_of(shoulder(light.y), table));
-        const auto blue = hn::ShiftLeft<16>(byte_of(shoulder(light.z), table));
-        const auto opaque = hn::Set(di, std::int32_t{-0x1000000});
-        const auto background = hn::Set(
-            di, static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(lighting.background)));
-        const auto bytes = hn::IfThenElse(hn::RebindMask(di, none_there), background,
-                                          hn::Or(hn::Or(red, green), hn::Or(blue, opaque)));
-        alignas(64) std::int32_t out[HWY_MAX_BYTES / sizeof(float)];
-        hn::Store(bytes, di, out);
-        std::memcpy(&colors[k], out, count * sizeof(Rgba8));
+        put(k, count, Vec3v{shoulder(light.x), shoulder(light.y), shoulder(light.z)}, none_there);
     }
 }
 
@@ -180,7 +171,51 @@ void shade(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
 
 void shade_of_target(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
                      std::span<Rgba8> colors) {
-    shade(lighting, rays, looks, colors);
+    const I di;
+    const SrgbTable& table = srgb_table();
+    shade(
+        lighting, rays, looks, colors.size(),
+        [&](std::size_t k, std::size_t count, const Vec3v& light, hn::Mask<D> none_there) HWY_ATTR {
+            const auto red = byte_of(light.x, table);
+            const auto green = hn::ShiftLeft<8>(byte_of(light.y, table));
+            const auto blue = hn::ShiftLeft<16>(byte_of(light.z, table));
+            const auto opaque = hn::Set(di, std::int32_t{-0x1000000});
+            const auto background = hn::Set(
+                di, static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(lighting.background)));
+            const auto bytes = hn::IfThenElse(hn::RebindMask(di, none_there), background,
+                                              hn::Or(hn::Or(red, green), hn::Or(blue, opaque)));
+            alignas(64) std::int32_t out[HWY_MAX_BYTES / sizeof(float)];
+            hn::Store(bytes, di, out);
+            std::memcpy(&colors[k], out, count * sizeof(Rgba8));
+        },
+        [&](std::size_t k, std::size_t count) {
+            std::fill_n(&colors[k], count, lighting.background);
+        });
+}
+
+void light_of_target(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
+                     std::size_t size, LightColumns& light) {
+    const D d;
+    const auto column = [&](std::array<float, LightColumns::room>& values, std::size_t k, V channel,
+                            double of_background, hn::Mask<D> none_there) HWY_ATTR {
+        const V clamped = hn::Min(hn::Max(channel, hn::Zero(d)), hn::Set(d, 1.0F));
+        hn::StoreU(hn::IfThenElse(none_there, hn::Set(d, static_cast<float>(of_background)),
+                                  clamped),
+                   d, &values[k]);
+    };
+    const Color& background = lighting.background_light;
+    shade(
+        lighting, rays, looks, size,
+        [&](std::size_t k, std::size_t, const Vec3v& lit, hn::Mask<D> none_there) HWY_ATTR {
+            column(light.r, k, lit.x, background.x, none_there);
+            column(light.g, k, lit.y, background.y, none_there);
+            column(light.b, k, lit.z, background.z, none_there);
+        },
+        [&](std::size_t k, std::size_t count) {
+            std::fill_n(&light.r[k], count, static_cast<float>(background.x));
+            std::fill_n(&light.g[k], count, static_cast<float>(background.y));
+            std::fill_n(&light.b[k], count, static_cast<float>(background.z));
+        });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -191,11 +226,17 @@ HWY_AFTER_NAMESPACE();
 namespace ivory {
 
 HWY_EXPORT(shade_of_target);
+HWY_EXPORT(light_of_target);
 
 void shade_lanes(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
                  std::span<Rgba8> colors) {
     static_assert(std::endian::native == std::endian::little && sizeof(Rgba8) == 4);
     HWY_DYNAMIC_DISPATCH(shade_of_target)(lighting, rays, looks, colors);
+}
+
+void light_lanes(const Lighting& lighting, const RayBundle& rays, const Looks& looks,
+                 std::size_t size, LightColumns& light) {
+    HWY_DYNAMIC_DISPATCH(light_of_target)(lighting, rays, looks, size, light);
 }
 
 }  // namespace ivory

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
@@ -30,6 +31,30 @@ PixelStatistics pixel_statistics(const Canvas& canvas) {
     return sum;
 }
 
+PixelStatistics pixel_statistics(const Canvas& canvas, const SampledPicture& sampled) {
+    PixelStatistics sum = pixel_statistics(canvas);
+    sum.pixels = {};
+    sum.tiles = sampled.pixels.size();
+    sum.empty_tiles = 0;
+    for (const std::array<std::uint16_t, 5>& tile : sampled.pixels) {
+        const auto all = static_cast<std::uint64_t>(std::accumulate(tile.begin(), tile.end(), 0));
+        for (std::size_t status = 0; status < tile.size(); ++status)
+            sum.pixels[status] += tile[status];
+        if (all > 0 && tile[static_cast<std::size_t>(Status::miss)] == all) ++sum.empty_tiles;
+    }
+    return sum;
+}
+
+PixelStatistics& PixelStatistics::operator+=(const PixelStatistics& other) {
+    for (std::size_t status = 0; status < pixels.size(); ++status)
+        pixels[status] += other.pixels[status];
+    tiles += other.tiles;
+    empty_tiles += other.empty_tiles;
+    enclosure_width_max = std::max(enclosure_width_max, other.enclosure_width_max);
+    unresolved_width_max = std::max(unresolved_width_max, other.unresolved_width_max);
+    return *this;
+}
+
 std::string statistics_json(const RenderStatistics& s) {
     Json pixels = Json::object();
     for (std::size_t status = 0; status < s.pixels.pixels.size(); ++status) {
@@ -42,10 +67,16 @@ std::string statistics_json(const RenderStatistics& s) {
     json["target"] = instruction_set();
     json["method"] = s.method;
     json["tolerance"] = s.options.tolerance;
+    json["samples"] = s.samples;
     json["camera"] = {{"position", array_of(s.camera.position)},
                       {"target", array_of(s.camera.target)},
                       {"up", array_of(s.camera.up)},
                       {"fov", s.camera.fov}};
+    if (s.camera.projection == Camera::Projection::orthographic) {
+        json["camera"]["projection"] =
+            projection_words[static_cast<std::size_t>(s.camera.projection)];
+        json["camera"]["height"] = height_of(s.camera);
+    }
     json["repeats"] = s.repeats;
     json["seconds"] = {{"load", s.seconds.load},   {"compile", s.seconds.compile},
                        {"trace", s.seconds.trace}, {"shade", s.seconds.shade},

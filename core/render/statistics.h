@@ -9,6 +9,7 @@
 
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "core/render/sampled_picture.h"
 
 namespace ivory {
 
@@ -18,9 +19,14 @@ struct PixelStatistics {
     std::size_t tiles = 0, empty_tiles = 0;
     double enclosure_width_max = 0;   // the widest t of a hit, in units of the scene
     double unresolved_width_max = 0;  // and of an unresolved pixel
+
+    PixelStatistics& operator+=(const PixelStatistics& other);
 };
 
 [[nodiscard]] PixelStatistics pixel_statistics(const Canvas& canvas);
+// Of several samples a pixel: the widths are those of the canvas, if anything is traced there.
+[[nodiscard]] PixelStatistics pixel_statistics(const Canvas& canvas,
+                                               const SampledPicture& sampled);
 
 struct Seconds {
     double load = 0, compile = 0, trace = 0, shade = 0, write = 0, total = 0;
@@ -33,6 +39,7 @@ struct RenderStatistics {
     Camera camera;
     Seconds seconds;
     int repeats = 1;
+    int samples = 1;  // a pixel
     PixelStatistics pixels;
     Counts counts;
     std::size_t elements = 0, visible_elements = 0, reached_elements = 0;

@@ -7,10 +7,12 @@
 
 namespace ivory {
 
-TileLists::TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop)
+TileLists::TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
+                     int samples)
     : picture_(picture),
       canvas_(canvas),
       stop_(stop),
+      samples_(samples),
       all_(all_elements(*picture.field)),
       all_clusters_(picture.options.skipping.lists ? all_clusters(*picture.field) : all_),
       region_lists_(canvas.grid.regions.size()),
@@ -33,7 +35,9 @@ ElementList TileLists::narrowed(const ElementList& parent, const PixelRect& rect
     if (parent.certainly_empty || !picture_.options.skipping.lists) return parent;
     const Frame& frame = canvas_.frame;
     ElementList list = reaching_clusters(
-        *picture_.field, parent, cone_around(picture_.view, frame.width, frame.height, rect));
+        *picture_.field, parent,
+        cone_around(picture_.view, frame.width * samples_, frame.height * samples_,
+                    times(rect, samples_)));
     counts.skipping.list_elements += parent.size();
     counts.skipping.list_left_out += parent.size() - list.size();
     return list;
@@ -57,16 +61,15 @@ bool TileLists::make_block(std::size_t block, Counts& counts) {
     return true;
 }
 
-void TileLists::make_tile(std::size_t tile, Counts& counts) {
-    TileState& state = canvas_.tiles[tile];
-    state.list = narrowed(*block_lists_[block_of(tile)], canvas_.grid.tiles.rect(tile), counts);
-    state.has_list = true;
+ElementList TileLists::of_tile(std::size_t tile, Counts& counts) const {
+    return narrowed(*block_lists_[block_of(tile)], canvas_.grid.tiles.rect(tile), counts);
 }
 
 CommonBundle TileLists::common(std::size_t block) const {
     static std::atomic<std::uint64_t> numbers{0};
-    return {.bundle = bundle_around(picture_.view, canvas_.frame.width, canvas_.frame.height,
-                                    canvas_.grid.blocks.rect(block)),
+    return {.bundle = bundle_around(picture_.view, canvas_.frame.width * samples_,
+                                    canvas_.frame.height * samples_,
+                                    times(canvas_.grid.blocks.rect(block), samples_)),
             .list = &*block_lists_[block],
             .number = numbers.fetch_add(1, std::memory_order_relaxed) + 1};
 }

@@ -14,7 +14,9 @@ namespace ivory {
 
 class TileLists {
   public:
-    TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop);
+    // Valid on all rays of a picture of `samples` times as many columns and rows.
+    TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
+              int samples = 1);
 
     // All elements, which every list stands for.
     [[nodiscard]] const ElementList& all() const { return all_; }
@@ -30,8 +32,8 @@ class TileLists {
     }
     void forget_block(std::size_t block) { block_lists_[block].reset(); }
 
-    // The tile's, of which the canvas keeps it; its block's has to be there.
-    void make_tile(std::size_t tile, Counts& counts);
+    // The tile's; its block's has to be there.
+    [[nodiscard]] ElementList of_tile(std::size_t tile, Counts& counts) const;
 
     // The block's as a bundle that its tiles share, with a number that no other has.
     [[nodiscard]] CommonBundle common(std::size_t block) const;
@@ -46,6 +48,7 @@ class TileLists {
     const Picture& picture_;
     Canvas& canvas_;
     const std::atomic<bool>& stop_;
+    const int samples_;
     const ElementList all_, all_clusters_;
     std::vector<ElementList> region_lists_;
     std::vector<std::atomic<int>> region_done_;

@@ -19,6 +19,13 @@ TileWorker::TileWorker(const Picture& picture, Canvas& canvas, const JobSettings
     surfaces_.wants_elements = !canvas.looks.empty();
 }
 
+SampleWorker& TileWorker::sampler(SampledPicture& sampled) {
+    if (sampler_ == nullptr) {
+        sampler_ = std::make_unique<SampleWorker>(picture_, canvas_, sampled, lists_, stop_, counts);
+    }
+    return *sampler_;
+}
+
 void TileWorker::paint_empty(const PixelRect& rect) const {
     Frame& frame = canvas_.frame;
     std::array<Rgba8, TileGrid::block_side> row;
@@ -77,7 +84,8 @@ bool TileWorker::share(std::size_t tile) {
 }
 
 void TileWorker::gather(std::size_t tile, int stride, int coarser, bool with_parts) {
-    tile_.gather(picture_.view, canvas_.frame, canvas_.grid.tiles.rect(tile), stride, coarser,
+    tile_.gather(picture_.view, canvas_.frame.width, canvas_.frame.height,
+                 canvas_.grid.tiles.rect(tile), stride, coarser,
                  with_parts && canvas_.tiles[tile].list.most_elements() >= Descent::parts_elements);
 }
 
@@ -192,7 +200,7 @@ void TileWorker::paint_looks(std::size_t index) {
     const std::size_t count = rect.area();
     // Directions are not needed where vectors of pixels have no surface.
     constexpr std::size_t together = 16;
-    const TilePlane plane(picture_.view, frame, rect);
+    const TilePlane plane(picture_.view, frame.width, frame.height, rect);
     alignas(64) std::array<double, together> u, v;
     RayBundle& rays = tile_.rays;
     for (std::size_t first = 0; first < count; first += together) {

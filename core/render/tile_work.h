@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "core/render/sample_work.h"
 #include "core/render/shade.h"
 #include "core/render/tile_lists.h"
 #include "core/render/tile_rays.h"
@@ -40,6 +42,8 @@ class alignas(128) TileWorker {
     // Misses, all over the rectangle, and all over the tile.
     void paint_empty(const PixelRect& rect) const;
     void leave_empty(std::size_t tile) const;
+    // Its own, for the tiles of such a picture.
+    [[nodiscard]] SampleWorker& sampler(SampledPicture& sampled);
     // The elements of a list that a tile with a surface has.
     void mark_reached(const ElementList& list);
 
@@ -72,6 +76,7 @@ class alignas(128) TileWorker {
     TileLists& lists_;
     const std::atomic<bool>& stop_;
     ElementFilter recolored_;
+    std::unique_ptr<SampleWorker> sampler_;
     CommonBundle common_;  // of the block that is being worked on; number 0: nobody has asked yet
 
     // Of the tile, between tracing and the frame.

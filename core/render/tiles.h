@@ -19,6 +19,11 @@ struct PixelRect {
     friend constexpr bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
+// The same part of a picture of so many times as many columns and rows.
+[[nodiscard]] constexpr PixelRect times(const PixelRect& rect, int factor) {
+    return {rect.x0 * factor, rect.y0 * factor, rect.x1 * factor, rect.y1 * factor};
+}
+
 // The squares of one size, numbered row by row from the top left; those at the right and at the
 // bottom are cut off by the picture's edge.
 //

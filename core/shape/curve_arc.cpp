@@ -187,7 +187,7 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         Span x;
         double least;
     };
-    constexpr std::size_t most_leaves = 32, deepest = 30;
+    constexpr std::size_t most_leaves = 32, most_halvings = 512;
     std::array<Leaf, most_leaves> leaves;
     std::size_t leaf_count = 0;
     double best = infinity<double>;
@@ -212,8 +212,9 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         leave(Span(x), square.lo);
     };
 
-    std::array<std::pair<double, double>, deepest + 2> open;
-    std::size_t open_count = 0;
+    // One for each halving on the way down.
+    std::array<std::pair<double, double>, most_halvings + 2> open;
+    std::size_t open_count = 0, halvings = 0;
     open[open_count++] = {-1, 1};
     while (open_count > 0) {
         const auto [a, b] = open[--open_count];
@@ -244,9 +245,13 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
             const double middle = 0.5 * (a + b);
             const Span square = square_at(Span(middle));
             best = std::min(best, square.hi);
-            const double least = quick::sub(square, quick::mul(Span(mag(g)), Span(b - a))).lo;
+            // D' = -2 g
+            const Span gain = quick::mul(Span(mag(g)), Span(b - a));
+            const double least = quick::sub(square, gain).lo;
             if (least > best) continue;
-            if (b - a <= 2 * std::ldexp(1.0, -static_cast<int>(deepest))) {
+            // Where D is flat, about a centre of curvature or for an arc that is small beside |v|, halves
+            // soon say no more than rounding has left.
+            if (gain.hi <= 2 * (square.hi - square.lo) || ++halvings > most_halvings) {
                 leave(x, least);
                 continue;
             }

@@ -136,6 +136,56 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     return found;
 }
 
+void PacketTracer::certify(const Field& field, const ElementList& list, const RayBundle& rays,
+                           const Footprint& footprint, const Settings& settings,
+                           BundleIsolations& isolations, BundleSurfaces& surfaces,
+                           Counts& counts) {
+    const auto leave_all = [&] {
+        std::fill_n(isolations.status.begin(), rays.count, Status::unresolved);
+    };
+    surfaces.clear(rays.count);
+    if (!descent_.build(field, list, rays.bundle, settings.tolerance, true, rays.common,
+                        &counts.stop)) {
+        leave_all();
+        return;
+    }
+    lanes_.t_lo = isolations.t_lo.data();
+    lanes_.t_hi = isolations.t_hi.data();
+    take(rays, true);
+    const double limit = exact_limit(field, rays.bundle);
+    descent_.begin(parts_, lanes_.rays,
+                   budget + static_cast<int>(parts_.size()) * budget_of_part);
+    const auto wanted = [&](const BundlePart& part, double, double) {
+        return any(part, Lanes::walking);
+    };
+    while (Window* const window = descent_.next(wanted)) {
+        const BundlePart part = descent_.part();
+        if (!window->coarse_usable) {
+            leave(*window, part);
+        } else {
+            const FootprintBounds bounds{footprint.radius + window->end * footprint.spread,
+                                         descent_.field().bound_across()};
+            const std::uint64_t steps = packet_steps().certify(
+                *window, bounds, descent_.field().threshold(), descent_.field().unit(), part.first,
+                part.end, lanes_, counts.stop);
+            counts.evaluations += steps;
+            counts.element_evaluations += steps * (window->strong.size + window->weak.size);
+            surface_in(*window, part, field, limit, surfaces, counts.stop);
+        }
+        if (counts.stop.requested() || !any(parts_[0], Lanes::walking)) break;
+    }
+    if (counts.stop.requested()) {
+        leave_all();
+        return;
+    }
+    packet_steps().conclude(lanes_, isolations);
+    for (std::size_t k = 0; k < rays.count; ++k) {
+        if (isolations.status[k] == Status::hit) {
+            isolations.t_lo[k] = isolations.t_hi[k] = lanes_.t[k];
+        }
+    }
+}
+
 // True: there may be hits to be looked at.
 bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
     const Cancellation& stop = job.counts.stop;

@@ -40,6 +40,13 @@ class PacketTracer {
                         const Settings& settings, BundleIsolations& isolations,
                         BundleSurfaces* surfaces, Counts& counts);
 
+    // Rays that are the middles of pixels, in a bundle that holds all rays of these pixels: hit and miss
+    // are proved of all rays of the pixel, t being about the middle's root; unresolved says no more than
+    // that. `surfaces` as in `isolate`.
+    void certify(const Field& field, const ElementList& list, const RayBundle& rays,
+                 const Footprint& footprint, const Settings& settings,
+                 BundleIsolations& isolations, BundleSurfaces& surfaces, Counts& counts);
+
     // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
     // `found` then have to be found by other means.
     void surface(const Field& field, const ElementList& list, const RayBundle& rays,

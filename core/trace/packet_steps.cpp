@@ -5,6 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/trace/packet_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
+#include "core/trace/certify.inl"
 #include "core/trace/enclose.inl"
 #include "core/trace/packet_lanes.inl"
 #include "core/trace/surfaces.inl"
@@ -15,8 +16,8 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 
 const PacketSteps& steps_of_target() {
-    static const PacketSteps steps{prepare, any,  walk,    walk_again,
-                                   enclose, look, surface, conclude};
+    static const PacketSteps steps{prepare, any,  walk,    walk_again, enclose,
+                                   certify, look, surface, conclude};
     return steps;
 }
 

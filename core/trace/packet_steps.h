@@ -15,6 +15,7 @@
 #include "core/math/vec3.h"
 #include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
+#include "core/trace/footprint.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
 
@@ -82,6 +83,13 @@ struct PacketSteps {
     std::uint64_t (*enclose)(const Window& window, double threshold, double unit, double half_width,
                              double left_out, std::size_t first, std::size_t end,
                              Lanes::State pinned, Lanes::State otherwise, Lanes& lanes,
+                             Cancellation& stop);
+
+    // Of walking lanes, each the middle of a pixel (core/trace/footprint.h): those whose pixel is certainly
+    // hit become hits, t about the middle's root; those that nothing is certain of are undecided. Counts
+    // pairs of a lane and a step.
+    std::uint64_t (*certify)(const Window& window, const FootprintBounds& bounds, double threshold,
+                             double unit, std::size_t first, std::size_t end, Lanes& lanes,
                              Cancellation& stop);
 
     // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,

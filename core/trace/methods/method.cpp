@@ -1,5 +1,6 @@
 #include "core/trace/methods/method.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -53,6 +54,12 @@ void Method::surface_bundle(const Field& field, const ElementList& list, const R
         surfaces.set(k, surface(field, list, rays.ray(k), m[k], options));
         stop.after(list.elements.size());
     }
+}
+
+void Method::certify_bundle(const Field&, const ElementList&, const RayBundle& rays,
+                            const Footprint&, const MethodOptions&, BundleIsolations& isolations,
+                            BundleSurfaces&, Counts&) const {
+    std::fill_n(isolations.status.begin(), rays.size(), Status::unresolved);
 }
 
 ElementList elements_for(const RayBundle& rays, const Field& field, const ElementList& list) {

@@ -9,6 +9,7 @@
 #include "core/math/cancellation.h"
 #include "core/trace/bundle_isolations.h"
 #include "core/trace/bundle_surfaces.h"
+#include "core/trace/footprint.h"
 #include "core/trace/ray.h"
 #include "core/trace/ray_bundle.h"
 #include "core/trace/skipping.h"
@@ -48,6 +49,14 @@ class Method {
     virtual void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                               const MethodOptions& options, BundleIsolations& isolations,
                               BundleSurfaces* surfaces, Counts& counts) const;
+
+    // Of rays that are the middles of pixels, in a bundle that holds all rays of these: hit and miss
+    // where that is certain of all rays of the pixel (core/trace/footprint.h), and then how the middle
+    // looks; unresolved where nothing is, as it is of methods that prove nothing.
+    virtual void certify_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                                const Footprint& footprint, const MethodOptions& options,
+                                BundleIsolations& isolations, BundleSurfaces& surfaces,
+                                Counts& counts) const;
 
     // Normal and colour of each ray at its m; where that is not finite, they stay. Those that come
     // after a stop stay too.

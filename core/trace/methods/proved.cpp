@@ -210,6 +210,20 @@ void Proved::trace_bundle(const Field& field, const ElementList& list, const Ray
         surface_bundle(field, list, rays, options, {m.data(), rays.size()}, *surfaces, counts.stop);
 }
 
+void Proved::certify_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                            const Footprint& footprint, const MethodOptions& options,
+                            BundleIsolations& isolations, BundleSurfaces& surfaces,
+                            Counts& counts) const {
+    if (!options.skipping.packets) {
+        Method::certify_bundle(field, list, rays, footprint, options, isolations, surfaces, counts);
+        return;
+    }
+    thread_local PacketTracer packets;
+    packets.certify(field, list, rays, footprint,
+                    {options.tolerance, greatest_cell(field, options.tolerance), options.skipping},
+                    isolations, surfaces, counts);
+}
+
 void Proved::surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                             const MethodOptions& options, std::span<const double> m,
                             BundleSurfaces& surfaces, Cancellation& stop) const {

@@ -19,6 +19,10 @@ class Proved final : public Method {
     void trace_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                       const MethodOptions& options, BundleIsolations& isolations,
                       BundleSurfaces* surfaces, Counts& counts) const override;
+    void certify_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
+                        const Footprint& footprint, const MethodOptions& options,
+                        BundleIsolations& isolations, BundleSurfaces& surfaces,
+                        Counts& counts) const override;
     void surface_bundle(const Field& field, const ElementList& list, const RayBundle& rays,
                         const MethodOptions& options, std::span<const double> m,
                         BundleSurfaces& surfaces, Cancellation& stop) const override;

@@ -339,9 +339,7 @@ TEST(Packet, AStepThatOverflowsDecidesNothing) {
     rays->add(axis);
     BundleIsolations found;
     lanes->count = 1;
-    lanes->dx = rays->dx.data();
-    lanes->dy = rays->dy.data();
-    lanes->dz = rays->dz.data();
+    lanes->rays = rays->columns();
     lanes->t_lo = found.t_lo.data();
     lanes->t_hi = found.t_hi.data();
     packet_steps().prepare(*lanes);

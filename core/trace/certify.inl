@@ -1,0 +1,219 @@
+// What is certain of all rays of a pixel, from the one in its middle (core/trace/footprint.h).
+#if defined(IVORY_CORE_TRACE_CERTIFY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef IVORY_CORE_TRACE_CERTIFY_INL
+#undef IVORY_CORE_TRACE_CERTIFY_INL
+#else
+#define IVORY_CORE_TRACE_CERTIFY_INL
+#endif
+
+#include "core/trace/field_lanes.inl"
+#include "core/trace/packet_lanes.inl"
+#include "core/trace/walk.inl"
+
+HWY_BEFORE_NAMESPACE();
+namespace ivory {
+namespace HWY_NAMESPACE {
+namespace {
+
+// f in the middle, grad f of what is neither joined nor kinked there, and the slope of f, of which that
+// of the joined is a guess.
+struct Middle {
+    V<F> f;
+    Vec3v<F> gradient;
+    V<F> slope;
+};
+
+template <Shape shape, KernelKind kind>
+HWY_INLINE void add_middle(F d, const BundleEntry<float>* entry, std::uint32_t count,
+                           const Vec3v<F>& p, const Vec3v<F>& direction, Middle& sum) {
+    for (const auto* const end = entry + count; entry != end; ++entry) {
+        V<F> square;
+        Vec3v<F> away = away_from<shape>(d, *entry, p, square);
+        V<F> s = hn::Mul(square, hn::Set(d, entry->inverse_square));
+        V<F> full = hn::Set(d, entry->slope);
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            for (; entry->joins != 0; ++entry) {
+                const Vec3v<F> other = away_from<shape>(d, entry[1], p, square);
+                const V<F> s_other = hn::Mul(square, hn::Set(d, entry[1].inverse_square));
+                const M<F> nearer = hn::Not(hn::Ge(s_other, s));  // what is no number shows
+                s = hn::IfThenElse(nearer, s_other, s);
+                full = hn::IfThenElse(nearer, hn::Set(d, entry[1].slope), full);
+                away = {hn::IfThenElse(nearer, other.x, away.x),
+                        hn::IfThenElse(nearer, other.y, away.y),
+                        hn::IfThenElse(nearer, other.z, away.z)};
+            }
+        }
+        const KernelValue<F> value = LanesOf<kind>::at(d, s);
+        sum.f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum.f);
+        const V<F> slope = hn::Mul(full, value.dk);
+        sum.slope = hn::MulAdd(slope, dot<F>(away, direction), sum.slope);
+        if constexpr (!SkeletonOf<shape>::is_joined) {
+            sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
+                            hn::MulAdd(slope, away.y, sum.gradient.y),
+                            hn::MulAdd(slope, away.z, sum.gradient.z)};
+        }
+    }
+}
+
+// The middle rays of a window, and by how much f can differ from there to the pixel's other rays.
+struct FootprintStage {
+    const Window& window;
+    float threshold;
+    // Per unit: rho >= the distance of another ray, steepest of what has no gradient, the second
+    // derivatives in any direction and the curvature along the ray.
+    float rho, unknown_slope, across, rise;
+    float above, below;
+
+    HWY_INLINE Middle middle(const RayLanes<F>& rays, V<F> tau) const {
+        const F d;
+        const V<F> zero = hn::Zero(d);
+        const Vec3v<F> p{hn::MulAdd(tau, rays.direction.x, rays.middle.x),
+                         hn::MulAdd(tau, rays.direction.y, rays.middle.y),
+                         hn::MulAdd(tau, rays.direction.z, rays.middle.z)};
+        Middle sum{hn::Set(d, -threshold), {zero, zero, zero}, zero};
+        for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
+            for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t first,
+                                                                 std::uint32_t count) HWY_ATTR {
+                add_middle<shape, kind>(d, stage->entry.data() + first, count, p,
+                                        rays.direction, sum);
+            });
+        }
+        return sum;
+    }
+    // |f(p') - f(p)| for p' of another ray at the same t: the gradient's part and that of the second
+    // derivatives over at most rho.
+    HWY_INLINE V<F> lateral(const Middle& at) const {
+        const F d;
+        constexpr float widened = 1 + 0x1p-10F;
+        const V<F> length = hn::Sqrt(dot<F>(at.gradient, at.gradient));
+        return hn::Mul(hn::Add(length, hn::Set(d, unknown_slope + 0.5F * across * rho)),
+                       hn::Set(d, rho * widened));
+    }
+};
+
+constexpr int most_footprint_steps = 48, most_entry_guesses = 4;
+
+// Lanes that walk, up to where f + lateral < 0 cannot be told any longer, and from there to a place where
+// f - lateral > 0: all of the pixel's rays have their first root between.
+std::uint64_t certify(const Window& window, const FootprintBounds& bounds, double threshold,
+                      double unit, std::size_t begin_lane, std::size_t end_lane, Lanes& lanes,
+                      Cancellation& stop) {
+    using Margin = StepMargins<float>;
+    constexpr double widened = 1 + 0x1p-18;
+    const F d;
+    const std::size_t N = hn::Lanes(d);
+    const auto c = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<float>(value)); };
+    const double per_square = unit * unit * widened;
+    const FootprintStage stage{
+        window,
+        static_cast<float>(threshold),
+        static_cast<float>(bounds.rho / unit * widened),
+        static_cast<float>((window.coarse_bounds.slope + bounds.across.joined_slope * unit) *
+                           widened),
+        static_cast<float>(bounds.across.curvature * per_square),
+        static_cast<float>(window.rise * unit * unit * (1 + 2 * Margin::tight) + 1e-20),
+        static_cast<float>(window.coarse_bounds.above * widened),
+        static_cast<float>(window.coarse_bounds.below * widened)};
+    const V<F> zero = hn::Zero(d), begin = c(window.tau_begin), end = c(window.tau_end);
+    const V<F> slack = c(0x1p-22 * window.tau_end);
+    const V<F> rise = hn::Set(d, stage.rise);
+    // Along the ray f gains what is not smooth at its steepest, and `lateral` at most rho times the
+    // second derivatives.
+    const V<F> more_slope = c((double{stage.unknown_slope} + double{stage.across} * stage.rho) *
+                              widened);
+    const std::uint64_t work = N * (window.strong.size + window.weak.size);
+    std::uint64_t steps = 0;
+    for (std::size_t first = begin_lane; first < end_lane; first += N) {
+        M<F> walking = lanes_in(d, Lanes::walking, lanes, first, end_lane);
+        if (hn::AllFalse(d, walking)) continue;
+        const M<F> taken = walking;
+        M<F> near = hn::FirstN(d, 0), undecided = near;
+        const RayLanes<F> rays = rays_of(d, window, unit, lanes, first);
+        V<F> tau = begin, f_near = zero, slope_near = zero, lateral_near = zero;
+        for (int step = 0; step < most_footprint_steps && !hn::AllFalse(d, walking); ++step) {
+            steps += hn::CountTrue(d, walking);
+            if (stop.after(work)) return steps;
+            const Middle middle = stage.middle(rays, tau);
+            const V<F> lateral = stage.lateral(middle);
+            const V<F> slope = middle.slope;
+            const V<F> f_hi = hn::Add(hn::Add(middle.f, hn::Set(d, stage.above)), lateral);
+            const M<F> below = hn::And(walking, hn::Lt(f_hi, zero));
+            undecided = hn::Or(undecided, hn::AndNot(below, walking));
+            const V<F> slope_hi =
+                hn::Add(dot<F>(middle.gradient, rays.direction), more_slope);
+            const V<F> safe =
+                hn::MulSub(parabola_zero(d, f_hi, slope_hi, rise), c(1 - Margin::rough), slack);
+            // Close enough that a root is the likelier end.
+            const M<F> comes_near =
+                hn::And(below, hn::And(hn::Gt(slope, zero),
+                                       hn::Gt(f_hi, hn::Mul(c(-0.75), lateral))));
+            const M<F> steps_on = hn::AndNot(comes_near, below);
+            undecided = hn::Or(
+                undecided,
+                hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
+            f_near = hn::IfThenElse(comes_near, middle.f, f_near);
+            slope_near = hn::IfThenElse(comes_near, slope, slope_near);
+            lateral_near = hn::IfThenElse(comes_near, lateral, lateral_near);
+            near = hn::Or(near, comes_near);
+            tau = hn::IfThenElse(steps_on, hn::Add(tau, safe), tau);
+            walking = hn::And(hn::AndNot(undecided, steps_on), hn::Lt(tau, end));
+        }
+        undecided = hn::Or(undecided, walking);
+        // The place where all are inside, by Newton's method onto f = lateral and some more.
+        M<F> guessing = near, found = hn::FirstN(d, 0);
+        V<F> inside = tau, f_inside = zero, slope = slope_near, f = f_near, aim = lateral_near;
+        for (int guess = 0; guess < most_entry_guesses && !hn::AllFalse(d, guessing); ++guess) {
+            steps += hn::CountTrue(d, guessing);
+            if (stop.after(work)) return steps;
+            const V<F> wanted =
+                hn::MulAdd(aim, c(1.25), c(1.25 * (stage.above + stage.below)));
+            const V<F> onward = hn::Mul(hn::Sub(wanted, f), rough_inverse(d, slope));
+            inside = hn::IfThenElse(guessing, hn::Min(hn::Add(inside, onward), end), inside);
+            const Middle middle = stage.middle(rays, inside);
+            aim = stage.lateral(middle);
+            f = middle.f;
+            slope = middle.slope;
+            const M<F> all_inside =
+                hn::And(guessing, hn::Gt(hn::Sub(hn::Sub(f, hn::Set(d, stage.below)), aim), zero));
+            f_inside = hn::IfThenElse(all_inside, f, f_inside);
+            found = hn::Or(found, all_inside);
+            guessing = hn::AndNot(all_inside, guessing);
+            // behind the place, on the way out again, or at the window's end
+            guessing = hn::And(guessing, hn::And(hn::Gt(slope, zero), hn::Lt(inside, end)));
+        }
+        undecided = hn::Or(undecided, hn::AndNot(found, near));
+        // The middle's own root, by the chord and one step of Newton's.
+        V<F> root = zero;
+        if (!hn::AllFalse(d, found)) {
+            const V<F> share = hn::Div(hn::Neg(f_near), hn::Sub(f_inside, f_near));
+            root = hn::MulAdd(hn::Sub(inside, tau), share, tau);
+            steps += hn::CountTrue(d, found);
+            const Middle middle = stage.middle(rays, root);
+            const V<F> of_root = middle.slope;
+            const V<F> next = hn::Sub(root, hn::Mul(middle.f, rough_inverse(d, of_root)));
+            root = hn::IfThenElse(hn::Gt(of_root, zero), hn::Min(hn::Max(next, tau), inside), root);
+        }
+        const std::uint64_t found_bits = bits_of(d, found), undecided_bits = bits_of(d, undecided),
+                            taken_bits = bits_of(d, taken);
+        alignas(64) float at[HWY_MAX_BYTES / sizeof(float)];
+        hn::Store(root, d, at);
+        for (std::size_t k = 0; k < N && first + k < end_lane; ++k) {
+            if ((taken_bits >> k & 1) == 0) continue;
+            if ((undecided_bits >> k & 1) != 0) lanes.state[first + k] = Lanes::undecided;
+            if ((found_bits >> k & 1) == 0) continue;
+            lanes.state[first + k] = Lanes::hit;
+            // within the window, where it is looked at
+            lanes.t[first + k] =
+                std::clamp(window.middle + double{at[k]} * unit, window.begin,
+                           std::nextafter(window.end, window.begin));
+        }
+    }
+    return steps;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace ivory
+HWY_AFTER_NAMESPACE();
+
+#endif
