@@ -172,10 +172,11 @@ void add_render_options(CLI::App& call, RenderArguments& render) {
               "the mean of so many samples a pixel, a square of 1 to 8; default 1. --answers and "
               "--depth have all of them traced, and --answers is of the larger picture",
               [&render](const std::string& text) { render.samples = read_samples(text); });
-    add_value(call, "--stereo", "KIND",
-              "for two eyes: side-by-side, twice as wide, or red-cyan. --answers has the left eye's "
-              "picture first, --depth both side by side",
-              [&render](const std::string& text) { render.stereo = read_stereo(text); });
+    add_value(
+        call, "--stereo", "KIND",
+        "for two eyes: side-by-side, twice as wide, or red-cyan. --answers has the left eye's "
+        "picture first, --depth both side by side",
+        [&render](const std::string& text) { render.stereo = read_stereo(text); });
     add_value(call, "--eyes", "D",
               "how far apart the eyes are, with --stereo; default: a thirtieth of the target's "
               "distance",
@@ -264,6 +265,16 @@ void check(const RenderArguments& render) {
         throw UsageError(
             "nowhere to write to; name the picture with -o OUT.png, or --depth, "
             "--answers or --stats");
+    }
+    if (render.eyes && render.stereo == Stereo::none) {
+        throw UsageError(
+            "--eyes says nothing without --stereo; add --stereo side-by-side or red-cyan");
+    }
+    const long all =
+        static_cast<long>(render.width) * render.height * render.samples * render.samples;
+    if (!render.answers.empty() && all > largest_picture) {
+        throw UsageError("--answers would be of " + std::to_string(all) +
+                         " samples; take fewer, at most " + std::to_string(largest_picture));
     }
     check_files(std::array{NamedFile{"the scene", render.scene, {}}},
                 std::array{NamedFile{"-o", render.picture, picture_suffixes},

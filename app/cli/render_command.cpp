@@ -90,9 +90,8 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
                 const std::string& label, Progress& progress) {
     const int times = traces_larger(arguments) ? arguments.samples : 1;
     if (!eye.canvas) {
-        eye.canvas =
-            std::make_unique<Canvas>(arguments.width * times, arguments.height * times,
-                                     !arguments.answers.empty());
+        eye.canvas = std::make_unique<Canvas>(arguments.width * times, arguments.height * times,
+                                              !arguments.answers.empty());
     }
     eye.canvas->forget();
     JobSettings settings;
@@ -113,8 +112,8 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
     }
     eye.report = job.finish();
     if (times > 1) {
-        eye.sampled = std::make_unique<SampledPicture>(
-            mean_of(eye.picture, *eye.canvas, arguments.samples));
+        eye.sampled =
+            std::make_unique<SampledPicture>(mean_of(eye.picture, *eye.canvas, arguments.samples));
     }
 }
 
@@ -129,8 +128,7 @@ Run render_once(const Scene& scene, const RenderArguments& arguments, Task task,
                          arguments.work.options, arguments.work.threads);
         for (Rendering& eye : run.eyes) eye.picture = picture;
         if (arguments.stereo != Stereo::none) {
-            const double apart =
-                arguments.eyes.value_or(usual_eye_distance(picture.view.camera));
+            const double apart = arguments.eyes.value_or(usual_eye_distance(picture.view.camera));
             run.eyes[0].picture.view = eye_of(picture.view, Eye::left, apart);
             run.eyes[1].picture.view = eye_of(picture.view, Eye::right, apart);
         }
@@ -161,8 +159,7 @@ std::string picture_bytes(const Run& run, const RenderArguments& arguments) {
             return png_bytes(PictureBytes{width, height, left});
         case Stereo::side_by_side:
             return png_bytes(PictureBytes{
-                2 * width, height,
-                side_by_side(left, run.eyes[1].color(), width, height).data()});
+                2 * width, height, side_by_side(left, run.eyes[1].color(), width, height).data()});
         case Stereo::red_cyan:
             return png_bytes(PictureBytes{
                 width, height, red_cyan(left, run.eyes[1].color(), width, height).data()});

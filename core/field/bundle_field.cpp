@@ -217,8 +217,8 @@ AcrossSums BundleField::bound_across(const BundlePart& part, double t0, double t
         across = bundle_steps().bound_across_local(
             bounded.local, local_stretch(part, bounded.local_middle, t0, t1));
     } else {
-        across = bundle_steps().bound_across(*field_, stretch(part, t0, t1), scale_,
-                                             bounded.active);
+        across =
+            bundle_steps().bound_across(*field_, stretch(part, t0, t1), scale_, bounded.active);
     }
     across.curvature *= sums * per_unit * per_unit;
     across.joined_slope *= sums * per_unit;

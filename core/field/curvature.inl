@@ -22,9 +22,9 @@ struct BendLanes {
 template <KernelKind kind, class Tag, Shape shape>
 HWY_INLINE V<Tag> steepest(Tag d, const Seen<Tag, shape>& e, V<Tag> least, V<Tag> peak) {
     using Margin = Margins<hn::TFromD<Tag>>;
-    return hn::Mul(hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
-                   hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more),
-                           LanesOf<kind>::slope(d, least, peak)));
+    return hn::Mul(
+        hn::Mul(hn::Abs(e.strength), hn::Sqrt(e.inverse_square)),
+        hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more), LanesOf<kind>::slope(d, least, peak)));
 }
 
 // Adds the bends of some elements; returns the circles' bound of 1 / rho.
@@ -152,8 +152,7 @@ AcrossSums bound_across_local(const LocalElements& near, const LocalStretch& str
                                                                 std::size_t end) HWY_ATTR {
         add_across<shape, kind>(
             d, reach, first, end,
-            [&](std::size_t i)
-                HWY_ATTR { return seen_local<shape>(near, near.numbers, reach, i); },
+            [&](std::size_t i) HWY_ATTR { return seen_local<shape>(near, near.numbers, reach, i); },
             [&](std::size_t i) HWY_ATTR {
                 return BoundsOfLanes<V<F>>{hn::LoadU(d, &near.least[i]),
                                            hn::LoadU(d, &near.most[i]),

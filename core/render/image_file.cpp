@@ -143,8 +143,8 @@ bool write_png(const PictureBytes& picture, const std::vector<Strip>& strips, Pn
     }
     png_set_write_fn(png, &output, append, flush);
     png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width),
-                 static_cast<png_uint_32>(picture.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 static_cast<png_uint_32>(picture.height), 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     for (const Strip& strip : strips) {
@@ -192,8 +192,7 @@ std::vector<double> depth_of(const Frame& frame) {
 
 std::string depth_bytes(int width, int height, const double* depth) {
     const auto across = static_cast<std::size_t>(width), down = static_cast<std::size_t>(height);
-    std::string bytes =
-        "Pf\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
+    std::string bytes = "Pf\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
     bytes.reserve(bytes.size() + 4 * across * down);
     for (std::size_t j = down; j-- > 0;) {
         for (std::size_t i = 0; i < across; ++i) {

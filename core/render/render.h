@@ -17,8 +17,8 @@ namespace ivory {
 
 enum class Task : std::uint8_t {
     trace_and_shade,
-    trace,  // no colours: for depth, or for answers where the canvas keeps the surface
-    shade,  // what is traced already, from its t: after a change of colours, lights or background
+    trace,   // no colours: for depth, or for answers where the canvas keeps the surface
+    shade,   // what is traced already, from its t: after a change of colours, lights or background
     sample,  // several samples a pixel, on `sampled`; the canvas stays as it is
 };
 
@@ -47,7 +47,7 @@ struct JobSettings {
     int threads = 1;  // 1 or more
     Task task = Task::trace_and_shade;
     Order order = Order::plain;
-    bool keep_lists = false;  // in the canvas, for the next job
+    bool keep_lists = false;            // in the canvas, for the next job
     SampledPicture* sampled = nullptr;  // Task::sample
     // Task::shade: indices into the field, ascending, of the elements whose colour is another than
     // it was when the looks that the canvas keeps were found.
@@ -62,9 +62,10 @@ struct JobSettings {
 };
 
 struct JobReport {
-    bool complete = false;   // false: cancelled before the last tile
-    double seconds = 0;      // from start to the last worker's end
-    double shade_share = 0;  // of the workers' time, 0..1; the rest went into tracing, and all sampling
+    bool complete = false;  // false: cancelled before the last tile
+    double seconds = 0;     // from start to the last worker's end
+    double shade_share =
+        0;  // of the workers' time, 0..1; the rest went into tracing, and all sampling
     Counts counts;
     std::size_t tiles_traced = 0;  // tiles of which this job traced or shaded a pixel
     // Elements in the list of a tile that is not empty; shading does not count them.

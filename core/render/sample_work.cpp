@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/render/srgb.h"
 #include "core/trace/descent.h"
@@ -13,7 +12,9 @@ namespace {
 
 // A mean may be off by so many bytes where the middle stands for it. One byte is promised: what is left
 // is for what the parabolas do not know.
-constexpr double most_off = 0.3;
+constexpr double most_off = 0.6;
+// Second differences count as those of a smooth function where their own are no more than such a share.
+constexpr double smooth = 0.25;
 
 // How much brighter, in bytes of sRGB, a light that is a little brighter than `linear` is, for each unit
 // that it is brighter: 255 times the slope of the curve of IEC 61966-2-1.
@@ -55,7 +56,7 @@ bool SampleWorker::sample(std::size_t tile, const ElementList& list) {
         write_empty(tile, rect);
         return true;
     }
-    status_.fill(Status::unresolved);
+    status_.fill(Status::claimed_miss);  // whatever its first sample is
     settled_.fill(0);
     depth_.fill(infinity<double>);
     sum_ = {};
@@ -69,86 +70,104 @@ bool SampleWorker::sample(std::size_t tile, const ElementList& list) {
     return true;
 }
 
-// The light in the middles of pixels, where the pixel has one status.
-void SampleWorker::certify(const PixelRect& rect, const ElementList& list) {
-    rays_.gather(
-        picture_.view, canvas_.frame.width, canvas_.frame.height, rect,
-        list.most_elements() >= Descent::parts_elements, [](int, int) { return true; },
-        sampled_.samples);
+// What is certain of the pixels whose middles have been gathered, and their light.
+void SampleWorker::take_certain(const ElementList& list) {
     rays_.rays.common = common_.list->certainly_empty ? nullptr : &common_;
     surfaces_.exact = false;
     picture_.method->certify_bundle(*picture_.field, list, rays_.rays, footprint(),
                                     picture_.options, isolations_, surfaces_, counts_);
-    const std::size_t size = rays_.size();
-    light_lanes(picture_.lighting, rays_.rays, surfaces_, size, light_);
-    for (std::size_t k = 0; k < size; ++k) {
-        const std::size_t place = rays_.place[k];
-        const Status status = isolations_.status[k];
-        // A hit whose surface was not found has nothing to show.
-        if (status == Status::hit && !surfaces_.seen(k)) continue;
-        status_[place] = status;
-        sum_.r[place] = light_.r[k];
-        sum_.g[place] = light_.g[k];
-        sum_.b[place] = light_.b[k];
-    }
+    light_lanes(picture_.lighting, rays_.rays, surfaces_, rays_.size(), light_);
 }
 
-// Which of those are settled, and their means.
+void SampleWorker::certify(const PixelRect& rect, const ElementList& list) {
+    const int width = rect.width() + 2;
+    certain_.fill(Status::unresolved);
+    bool any_hit = false;
+    const auto take = [&](std::size_t place, std::size_t k) {
+        const Status status = isolations_.status[k];
+        // A hit whose surface was not found has nothing to show.
+        if (status == Status::hit && !surfaces_.seen(k)) return;
+        any_hit = any_hit || status == Status::hit;
+        certain_[place] = status;
+        middle_[place] = {light_.r[k], light_.g[k], light_.b[k]};
+    };
+    rays_.gather(
+        picture_.view, canvas_.frame.width, canvas_.frame.height, rect,
+        list.most_elements() >= Descent::parts_elements, [](int, int) { return true; },
+        sampled_.samples);
+    take_certain(list);
+    for (std::size_t k = 0; k < rays_.size(); ++k) {
+        const int i = rays_.place[k] % rect.width(), j = rays_.place[k] / rect.width();
+        take(static_cast<std::size_t>((j + 1) * width + i + 1), k);
+    }
+    if (!any_hit) return;
+    rays_.gather_ring(picture_.view, canvas_.frame.width, canvas_.frame.height, rect,
+                      sampled_.samples);
+    take_certain(list);
+    for (std::size_t k = 0; k < rays_.size(); ++k) take(rays_.place[k], k);
+}
+
+// Which pixels are settled, and their means.
 void SampleWorker::judge(const PixelRect& rect) {
-    const int width = rect.width(), height = rect.height();
-    const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * width + i); };
-    const auto is_hit = [&](int i, int j) {
-        return i >= 0 && j >= 0 && i < width && j < height && status_[at(i, j)] == Status::hit;
-    };
-    // The middle one of three pixels in a row that are hit, this one among them, along (di, dj): the one
-    // itself, if it may be.
-    const auto triple = [&](int i, int j, int di, int dj) -> std::optional<int> {
-        const auto fits = [&](int shift) {
-            return is_hit(i + (shift - 1) * di, j + (shift - 1) * dj) &&
-                   is_hit(i + shift * di, j + shift * dj) &&
-                   is_hit(i + (shift + 1) * di, j + (shift + 1) * dj);
-        };
-        for (const int shift : {0, 1, -1})
-            if (fits(shift)) return shift;
-        return std::nullopt;
-    };
+    const std::ptrdiff_t row = rect.width() + 2;
     const double n = sampled_.samples;
     const double share = (n * n - 1) / (24 * n * n);
-    Channels means = sum_;
-    for (int j = 0; j < height; ++j) {
-        for (int i = 0; i < width; ++i) {
-            const std::size_t here = at(i, j);
-            if (status_[here] == Status::miss) settled_[here] = 1;
-            if (status_[here] != Status::hit) continue;
-            const auto row = triple(i, j, 1, 0), column = triple(i, j, 0, 1);
-            if (!row || !column) continue;
-            bool is_settled = true;
-            const auto mean_of = [&](const Pixels<double>& channel, Pixels<double>& mean) {
-                const auto second = [&](int a, int b, int da, int db) {
-                    return channel[at(a - da, b - db)] - 2 * channel[at(a, b)] +
-                           channel[at(a + da, b + db)];
-                };
-                const double along_row = second(i + *row, j, 1, 0),
-                             along_column = second(i, j + *column, 0, 1);
-                const double off = share * (std::abs(along_row) + std::abs(along_column));
-                const double light = channel[here] + share * (along_row + along_column);
-                const double darker = std::max(std::min(light, channel[here]) - off, 0.0);
-                is_settled = is_settled && off * bytes_per_light(darker) <= most_off;
-                mean[here] = std::clamp(light, 0.0, 1.0);
+    for (int j = 0; j < rect.height(); ++j) {
+        for (int i = 0; i < rect.width(); ++i) {
+            const std::ptrdiff_t at = (j + 1) * row + i + 1;
+            const auto place = static_cast<std::size_t>(j * rect.width() + i);
+            const auto is_hit = [&](std::ptrdiff_t k) {
+                return certain_[static_cast<std::size_t>(k)] == Status::hit;
             };
-            mean_of(sum_.r, means.r);
-            mean_of(sum_.g, means.g);
-            mean_of(sum_.b, means.b);
-            settled_[here] = is_settled ? 1 : 0;
+            if (certain_[static_cast<std::size_t>(at)] == Status::miss) {
+                settled_[place] = 1;
+                status_[place] = Status::miss;
+            }
+            if (!is_hit(at) || !is_hit(at - 1) || !is_hit(at + 1) || !is_hit(at - row) ||
+                !is_hit(at + row)) {
+                continue;
+            }
+            const bool before_in_row = i > 0 && is_hit(at - 2),
+                       after_in_row = i + 1 < rect.width() && is_hit(at + 2),
+                       before_in_column = j > 0 && is_hit(at - 2 * row),
+                       after_in_column = j + 1 < rect.height() && is_hit(at + 2 * row);
+            bool is_settled = true;
+            const auto mean_of = [&](double Light::*channel) {
+                const auto light = [&](std::ptrdiff_t k) {
+                    return middle_[static_cast<std::size_t>(k)].*channel;
+                };
+                const auto second = [&](std::ptrdiff_t k, std::ptrdiff_t step) {
+                    return light(k - step) - 2 * light(k) + light(k + step);
+                };
+                // What is left open along a row or a column, in `share`.
+                const auto open = [&](std::ptrdiff_t step, bool has_before, bool has_after) {
+                    const double here = second(at, step);
+                    const double before = has_before ? second(at - step, step) : 0,
+                                 after = has_after ? second(at + step, step) : 0;
+                    const double most =
+                        std::max({std::abs(before), std::abs(here), std::abs(after)});
+                    if (!has_before || !has_after) return 4 * most;
+                    const double change = std::abs(before - 2 * here + after);
+                    return 2 * (change <= smooth * most ? change : most);
+                };
+                const double off = share * (open(1, before_in_row, after_in_row) +
+                                            open(row, before_in_column, after_in_column));
+                const double more = share * (second(at, 1) + second(at, row));
+                const double mean = std::clamp(light(at) + more, 0.0, 1.0);
+                const double darkest =
+                    std::max(std::min(mean, light(at)) - std::abs(more) - off, 0.0);
+                is_settled = is_settled && off * bytes_per_light(darkest) <= most_off;
+                return mean;
+            };
+            const double r = mean_of(&Light::r), g = mean_of(&Light::g), b = mean_of(&Light::b);
+            if (!is_settled) continue;
+            settled_[place] = 1;
+            status_[place] = Status::hit;
+            sum_.r[place] = r;
+            sum_.g[place] = g;
+            sum_.b[place] = b;
         }
     }
-    const std::size_t size = rect.area();
-    for (std::size_t k = 0; k < size; ++k) {
-        if (settled_[k] != 0) continue;
-        means.r[k] = means.g[k] = means.b[k] = 0;
-        status_[k] = Status::claimed_miss;  // whatever its first sample is
-    }
-    sum_ = means;
 }
 
 bool SampleWorker::trace_rest(const PixelRect& rect, const ElementList& list) {
@@ -215,8 +234,7 @@ void SampleWorker::write(std::size_t tile, const PixelRect& rect) {
     count = {};
     for (int j = rect.y0; j < rect.y1; ++j) {
         for (int i = rect.x0; i < rect.x1; ++i) {
-            const auto place =
-                static_cast<std::size_t>((j - rect.y0) * rect.width() + i - rect.x0);
+            const auto place = static_cast<std::size_t>((j - rect.y0) * rect.width() + i - rect.x0);
             const std::size_t pixel = canvas_.frame.at(i, j);
             const Status status = status_[place];
             ++count[static_cast<std::size_t>(status)];
@@ -229,8 +247,8 @@ void SampleWorker::write(std::size_t tile, const PixelRect& rect) {
             const auto byte = [&](double sum) {
                 return table.byte(static_cast<float>(sum * share));
             };
-            sampled_.color[pixel] = {byte(sum_.r[place]), byte(sum_.g[place]),
-                                     byte(sum_.b[place]), 255};
+            sampled_.color[pixel] = {byte(sum_.r[place]), byte(sum_.g[place]), byte(sum_.b[place]),
+                                     255};
         }
     }
 }

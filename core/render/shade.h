@@ -20,7 +20,7 @@ struct Lighting {
     };
     std::vector<Lamp> lamps;
     Vec3d zenith;      // unit length: where the brighter half of the surrounding light comes from
-    Rgba8 background;        // of a pixel that misses
+    Rgba8 background;  // of a pixel that misses
     Color background_light;  // the same, linear
 };
 

@@ -199,9 +199,9 @@ void light_of_target(const Lighting& lighting, const RayBundle& rays, const Look
     const auto column = [&](std::array<float, LightColumns::room>& values, std::size_t k, V channel,
                             double of_background, hn::Mask<D> none_there) HWY_ATTR {
         const V clamped = hn::Min(hn::Max(channel, hn::Zero(d)), hn::Set(d, 1.0F));
-        hn::StoreU(hn::IfThenElse(none_there, hn::Set(d, static_cast<float>(of_background)),
-                                  clamped),
-                   d, &values[k]);
+        hn::StoreU(
+            hn::IfThenElse(none_there, hn::Set(d, static_cast<float>(of_background)), clamped), d,
+            &values[k]);
     };
     const Color& background = lighting.background_light;
     shade(

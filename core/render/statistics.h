@@ -25,8 +25,7 @@ struct PixelStatistics {
 
 [[nodiscard]] PixelStatistics pixel_statistics(const Canvas& canvas);
 // Of several samples a pixel: the widths are those of the canvas, if anything is traced there.
-[[nodiscard]] PixelStatistics pixel_statistics(const Canvas& canvas,
-                                               const SampledPicture& sampled);
+[[nodiscard]] PixelStatistics pixel_statistics(const Canvas& canvas, const SampledPicture& sampled);
 
 struct Seconds {
     double load = 0, compile = 0, trace = 0, shade = 0, write = 0, total = 0;

@@ -14,8 +14,7 @@ std::array<double, 256> linear_of_bytes() {
     std::array<double, 256> linear{};
     for (std::size_t byte = 0; byte < linear.size(); ++byte) {
         const double value = static_cast<double>(byte) / 255;
-        linear[byte] =
-            value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+        linear[byte] = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
     }
     return linear;
 }

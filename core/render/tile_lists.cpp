@@ -36,8 +36,7 @@ ElementList TileLists::narrowed(const ElementList& parent, const PixelRect& rect
     const Frame& frame = canvas_.frame;
     ElementList list = reaching_clusters(
         *picture_.field, parent,
-        cone_around(picture_.view, frame.width * samples_, frame.height * samples_,
-                    times(rect, samples_)));
+        cone_around(picture_.view, frame.width * samples_, frame.height * samples_, seen(rect)));
     counts.skipping.list_elements += parent.size();
     counts.skipping.list_left_out += parent.size() - list.size();
     return list;
@@ -69,7 +68,7 @@ CommonBundle TileLists::common(std::size_t block) const {
     static std::atomic<std::uint64_t> numbers{0};
     return {.bundle = bundle_around(picture_.view, canvas_.frame.width * samples_,
                                     canvas_.frame.height * samples_,
-                                    times(canvas_.grid.blocks.rect(block), samples_)),
+                                    seen(canvas_.grid.blocks.rect(block))),
             .list = &*block_lists_[block],
             .number = numbers.fetch_add(1, std::memory_order_relaxed) + 1};
 }

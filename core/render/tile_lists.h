@@ -14,7 +14,8 @@ namespace ivory {
 
 class TileLists {
   public:
-    // Valid on all rays of a picture of `samples` times as many columns and rows.
+    // Of several samples: valid on all rays of a picture of `samples` times as many columns and rows, and
+    // of the pixels around each part.
     TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
               int samples = 1);
 
@@ -42,6 +43,10 @@ class TileLists {
     [[nodiscard]] std::size_t region_of(std::size_t block) const;
 
   private:
+    // A part as the lists see it, in pixels of that picture.
+    [[nodiscard]] PixelRect seen(const PixelRect& rect) const {
+        return samples_ == 1 ? rect : times(widened(rect, 1), samples_);
+    }
     [[nodiscard]] ElementList narrowed(const ElementList& parent, const PixelRect& rect,
                                        Counts& counts) const;
 

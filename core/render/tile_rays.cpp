@@ -12,9 +12,9 @@ int first_on(int stride, int from) { return (from + stride - 1) / stride * strid
 
 // The one of that number, or of that rectangle where the tile is cut off.
 Bundle TileRays::bundle(std::size_t number, const PixelRect& part_of_tile) const {
-    return in_parts_ && is_whole_ ? bundles_[number]
-                                  : bundle_around(*view_, all_width_, all_height_,
-                                                  times(part_of_tile, samples_));
+    return in_parts_ && is_whole_
+               ? bundles_[number]
+               : bundle_around(*view_, all_width_, all_height_, times(part_of_tile, samples_));
 }
 
 void TileRays::begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
@@ -60,6 +60,46 @@ void TileRays::end(const View& view) {
         rays.oy[k] = origin.y;
         rays.oz[k] = origin.z;
     }
+}
+
+void TileRays::gather_ring(const View& view, int width, int height, const PixelRect& rect,
+                           int samples) {
+    view_ = &view;
+    samples_ = samples;
+    all_width_ = width * samples;
+    all_height_ = height * samples;
+    is_whole_ = false;
+    in_parts_ = true;
+    const PixelRect all = widened(rect, 1);
+    rays.count = rays.part_count = 0;
+    rays.bundle = bundle(0, all);
+    rays.add_part(whole_of(rays.bundle));
+    const auto add_piece = [&](const PixelRect& piece) {
+        const std::size_t first = rays.count;
+        for (int j = piece.y0; j < piece.y1; ++j) {
+            for (int i = piece.x0; i < piece.x1; ++i) {
+                u_[rays.count] = plane_u(view, width, height, i);
+                v_[rays.count] = plane_v(view, height, j);
+                place[rays.count++] =
+                    static_cast<std::uint16_t>((j - all.y0) * all.width() + i - all.x0);
+            }
+        }
+        add_part(0, piece, first);
+    };
+    constexpr int side = 4;
+    for (int x = all.x0; x < all.x1; x += side) {
+        const int end = std::min(x + side, all.x1);
+        add_piece({x, all.y0, end, rect.y0});
+        add_piece({x, rect.y1, end, all.y1});
+    }
+    for (int y = rect.y0; y < rect.y1; y += side) {
+        const int end = std::min(y + side, rect.y1);
+        add_piece({all.x0, y, rect.x0, end});
+        add_piece({rect.x1, y, all.x1, end});
+    }
+    rays.parts[0].first_part = 1;
+    rays.parts[0].end_of_parts = static_cast<std::uint32_t>(rays.part_count);
+    this->end(view);
 }
 
 void TileRays::gather(const View& view, int width, int height, const PixelRect& rect, int stride,

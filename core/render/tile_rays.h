@@ -53,6 +53,9 @@ struct TileRays {
         });
         end(view);
     }
+    // Those of the pixels around `rect`, in pieces of four side by side; the picture's edge is none to them.
+    // `place`: of an array of two more columns and rows than the tile has.
+    void gather_ring(const View& view, int width, int height, const PixelRect& rect, int samples);
     // Those on `stride` but not on `coarser` (0: none is left out).
     void gather(const View& view, int width, int height, const PixelRect& rect, int stride,
                 int coarser, bool in_parts);
@@ -98,11 +101,10 @@ struct TileRays {
     void add(int width, const PixelRect& rect, int i, int j) {
         u_[rays.count] = plane_->u[static_cast<std::size_t>(i - rect.x0)];
         v_[rays.count] = plane_->v[static_cast<std::size_t>(j - rect.y0)];
-        place[rays.count] =
-            static_cast<std::uint16_t>((j - rect.y0) * rect.width() + i - rect.x0);
-        pixel[rays.count++] = static_cast<std::uint32_t>(
-            static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
-            static_cast<std::size_t>(i));
+        place[rays.count] = static_cast<std::uint16_t>((j - rect.y0) * rect.width() + i - rect.x0);
+        pixel[rays.count++] = static_cast<std::uint32_t>(static_cast<std::size_t>(j) *
+                                                             static_cast<std::size_t>(width) +
+                                                         static_cast<std::size_t>(i));
     }
     void add_part(std::size_t number, const PixelRect& square, std::size_t first);
     void end(const View& view);

@@ -21,7 +21,8 @@ TileWorker::TileWorker(const Picture& picture, Canvas& canvas, const JobSettings
 
 SampleWorker& TileWorker::sampler(SampledPicture& sampled) {
     if (sampler_ == nullptr) {
-        sampler_ = std::make_unique<SampleWorker>(picture_, canvas_, sampled, lists_, stop_, counts);
+        sampler_ =
+            std::make_unique<SampleWorker>(picture_, canvas_, sampled, lists_, stop_, counts);
     }
     return *sampler_;
 }

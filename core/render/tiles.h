@@ -19,6 +19,11 @@ struct PixelRect {
     friend constexpr bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
+// And so many pixels more on each side.
+[[nodiscard]] constexpr PixelRect widened(const PixelRect& rect, int by) {
+    return {rect.x0 - by, rect.y0 - by, rect.x1 + by, rect.y1 + by};
+}
+
 // The same part of a picture of so many times as many columns and rows.
 [[nodiscard]] constexpr PixelRect times(const PixelRect& rect, int factor) {
     return {rect.x0 * factor, rect.y0 * factor, rect.x1 * factor, rect.y1 * factor};

@@ -74,8 +74,8 @@ struct FootprintStage {
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t first,
                                                                  std::uint32_t count) HWY_ATTR {
-                add_middle<shape, kind>(d, stage->entry.data() + first, count, p,
-                                        rays.direction, sum);
+                add_middle<shape, kind>(d, stage->entry.data() + first, count, p, rays.direction,
+                                        sum);
             });
         }
         return sum;
@@ -91,13 +91,18 @@ struct FootprintStage {
     }
 };
 
-constexpr int most_footprint_steps = 48, most_entry_guesses = 4;
+constexpr int most_footprint_steps = 48, most_entry_guesses = 4, most_root_steps = 8;
+// A root is known to so many distances of the pixel's rays.
+constexpr double close_to_root = 1.0 / 64;
+// And where the normal may turn by more over rho, in radians, the middle does not say how the pixel looks.
+constexpr double most_turn = 0.4;
 
 // Lanes that walk, up to where f + lateral < 0 cannot be told any longer, and from there to a place where
-// f - lateral > 0: all of the pixel's rays have their first root between.
+// f - lateral > 0: all of the pixel's rays have their first root between. If that is not in the window, the
+// next one, which has to begin where this one ends, goes on.
 std::uint64_t certify(const Window& window, const FootprintBounds& bounds, double threshold,
                       double unit, std::size_t begin_lane, std::size_t end_lane, Lanes& lanes,
-                      Cancellation& stop) {
+                      EnteringRays& entering, Cancellation& stop) {
     using Margin = StepMargins<float>;
     constexpr double widened = 1 + 0x1p-18;
     const F d;
@@ -119,15 +124,16 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
     const V<F> rise = hn::Set(d, stage.rise);
     // Along the ray f gains what is not smooth at its steepest, and `lateral` at most rho times the
     // second derivatives.
-    const V<F> more_slope = c((double{stage.unknown_slope} + double{stage.across} * stage.rho) *
-                              widened);
+    const V<F> more_slope =
+        c((double{stage.unknown_slope} + double{stage.across} * stage.rho) * widened);
     const std::uint64_t work = N * (window.strong.size + window.weak.size);
     std::uint64_t steps = 0;
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
+        const M<F> enters = lanes_in(d, Lanes::entering, lanes, first, end_lane);
         M<F> walking = lanes_in(d, Lanes::walking, lanes, first, end_lane);
-        if (hn::AllFalse(d, walking)) continue;
-        const M<F> taken = walking;
-        M<F> near = hn::FirstN(d, 0), undecided = near;
+        const M<F> taken = hn::Or(walking, enters);
+        if (hn::AllFalse(d, taken)) continue;
+        M<F> near = hn::FirstN(d, 0), undecided = near, found = near;
         const RayLanes<F> rays = rays_of(d, window, unit, lanes, first);
         V<F> tau = begin, f_near = zero, slope_near = zero, lateral_near = zero;
         for (int step = 0; step < most_footprint_steps && !hn::AllFalse(d, walking); ++step) {
@@ -135,77 +141,143 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
             if (stop.after(work)) return steps;
             const Middle middle = stage.middle(rays, tau);
             const V<F> lateral = stage.lateral(middle);
-            const V<F> slope = middle.slope;
             const V<F> f_hi = hn::Add(hn::Add(middle.f, hn::Set(d, stage.above)), lateral);
             const M<F> below = hn::And(walking, hn::Lt(f_hi, zero));
             undecided = hn::Or(undecided, hn::AndNot(below, walking));
-            const V<F> slope_hi =
-                hn::Add(dot<F>(middle.gradient, rays.direction), more_slope);
+            const V<F> slope_hi = hn::Add(dot<F>(middle.gradient, rays.direction), more_slope);
             const V<F> safe =
                 hn::MulSub(parabola_zero(d, f_hi, slope_hi, rise), c(1 - Margin::rough), slack);
             // Close enough that a root is the likelier end.
-            const M<F> comes_near =
-                hn::And(below, hn::And(hn::Gt(slope, zero),
-                                       hn::Gt(f_hi, hn::Mul(c(-0.75), lateral))));
+            const M<F> comes_near = hn::And(
+                below,
+                hn::And(hn::Gt(middle.slope, zero), hn::Gt(f_hi, hn::Mul(c(-0.75), lateral))));
             const M<F> steps_on = hn::AndNot(comes_near, below);
-            undecided = hn::Or(
-                undecided,
-                hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
+            undecided =
+                hn::Or(undecided,
+                       hn::AndNot(hn::And(hn::Gt(safe, slack), hn::Lt(safe, c(3e38))), steps_on));
             f_near = hn::IfThenElse(comes_near, middle.f, f_near);
-            slope_near = hn::IfThenElse(comes_near, slope, slope_near);
+            slope_near = hn::IfThenElse(comes_near, middle.slope, slope_near);
             lateral_near = hn::IfThenElse(comes_near, lateral, lateral_near);
             near = hn::Or(near, comes_near);
             tau = hn::IfThenElse(steps_on, hn::Add(tau, safe), tau);
             walking = hn::And(hn::AndNot(undecided, steps_on), hn::Lt(tau, end));
         }
         undecided = hn::Or(undecided, walking);
+
+        const auto is_inside = [&](const Middle& middle, V<F> lateral) HWY_ATTR {
+            return hn::Gt(hn::Sub(hn::Sub(middle.f, hn::Set(d, stage.below)), lateral), zero);
+        };
+        V<F> inside = tau, f_inside = zero;
+        if (!hn::AllFalse(d, enters)) {
+            steps += hn::CountTrue(d, enters);
+            const Middle middle = stage.middle(rays, begin);
+            const V<F> lateral = stage.lateral(middle);
+            found = hn::And(enters, is_inside(middle, lateral));
+            const M<F> onward = hn::AndNot(found, hn::And(enters, hn::Gt(middle.slope, zero)));
+            undecided = hn::Or(undecided, hn::AndNot(hn::Or(found, onward), enters));
+            tau = hn::IfThenElse(enters, begin, tau);
+            inside = hn::IfThenElse(enters, begin, inside);
+            f_inside = hn::IfThenElse(found, middle.f, f_inside);
+            f_near = hn::IfThenElse(onward, middle.f, f_near);
+            slope_near = hn::IfThenElse(onward, middle.slope, slope_near);
+            lateral_near = hn::IfThenElse(onward, lateral, lateral_near);
+            near = hn::Or(near, onward);
+        }
         // The place where all are inside, by Newton's method onto f = lateral and some more.
-        M<F> guessing = near, found = hn::FirstN(d, 0);
-        V<F> inside = tau, f_inside = zero, slope = slope_near, f = f_near, aim = lateral_near;
+        M<F> guessing = near, at_end = hn::FirstN(d, 0);
+        V<F> slope = slope_near, f = f_near, aim = lateral_near;
         for (int guess = 0; guess < most_entry_guesses && !hn::AllFalse(d, guessing); ++guess) {
             steps += hn::CountTrue(d, guessing);
             if (stop.after(work)) return steps;
-            const V<F> wanted =
-                hn::MulAdd(aim, c(1.25), c(1.25 * (stage.above + stage.below)));
+            const V<F> wanted = hn::MulAdd(aim, c(1.25), c(1.25 * (stage.above + stage.below)));
             const V<F> onward = hn::Mul(hn::Sub(wanted, f), rough_inverse(d, slope));
-            inside = hn::IfThenElse(guessing, hn::Min(hn::Add(inside, onward), end), inside);
+            inside = hn::IfThenElse(guessing, hn::Min(hn::Max(hn::Add(inside, onward), tau), end),
+                                    inside);
             const Middle middle = stage.middle(rays, inside);
             aim = stage.lateral(middle);
             f = middle.f;
             slope = middle.slope;
-            const M<F> all_inside =
-                hn::And(guessing, hn::Gt(hn::Sub(hn::Sub(f, hn::Set(d, stage.below)), aim), zero));
-            f_inside = hn::IfThenElse(all_inside, f, f_inside);
+            const M<F> all_inside = hn::And(guessing, is_inside(middle, aim));
+            f_inside = hn::IfThenElse(guessing, f, f_inside);
             found = hn::Or(found, all_inside);
-            guessing = hn::AndNot(all_inside, guessing);
-            // behind the place, on the way out again, or at the window's end
-            guessing = hn::And(guessing, hn::And(hn::Gt(slope, zero), hn::Lt(inside, end)));
+            // still rising: else it is on the way out again
+            guessing = hn::And(hn::AndNot(all_inside, guessing), hn::Gt(slope, zero));
+            const M<F> comes_to_end = hn::And(guessing, hn::Ge(inside, end));
+            at_end = hn::Or(at_end, comes_to_end);
+            guessing = hn::AndNot(comes_to_end, guessing);
         }
-        undecided = hn::Or(undecided, hn::AndNot(found, near));
-        // The middle's own root, by the chord and one step of Newton's.
-        V<F> root = zero;
-        if (!hn::AllFalse(d, found)) {
+        undecided = hn::Or(undecided, hn::AndNot(hn::Or(found, at_end), near));
+        // The middle's own root, where f changes its sign in the window: from the chord on by Newton's
+        // steps, kept between.
+        const M<F> crosses = hn::And(hn::And(hn::Or(found, at_end), near),
+                                     hn::And(hn::Lt(f_near, zero), hn::Gt(f_inside, zero)));
+        V<F> root = begin;
+        if (!hn::AllFalse(d, crosses)) {
             const V<F> share = hn::Div(hn::Neg(f_near), hn::Sub(f_inside, f_near));
-            root = hn::MulAdd(hn::Sub(inside, tau), share, tau);
-            steps += hn::CountTrue(d, found);
-            const Middle middle = stage.middle(rays, root);
-            const V<F> of_root = middle.slope;
-            const V<F> next = hn::Sub(root, hn::Mul(middle.f, rough_inverse(d, of_root)));
-            root = hn::IfThenElse(hn::Gt(of_root, zero), hn::Min(hn::Max(next, tau), inside), root);
+            root = hn::IfThenElse(crosses, hn::MulAdd(hn::Sub(inside, tau), share, tau), root);
+            V<F> lo = tau, hi = inside, steepness = zero;
+            M<F> moving = crosses;
+            for (int step = 0; step < most_root_steps && !hn::AllFalse(d, moving); ++step) {
+                steps += hn::CountTrue(d, moving);
+                const Middle middle = stage.middle(rays, root);
+                steepness =
+                    hn::IfThenElse(moving, dot<F>(middle.gradient, middle.gradient), steepness);
+                const M<F> before = hn::Lt(middle.f, zero);
+                lo = hn::IfThenElse(before, root, lo);
+                hi = hn::IfThenElse(before, hi, root);
+                const V<F> newton =
+                    hn::Sub(root, hn::Mul(middle.f, rough_inverse(d, middle.slope)));
+                const M<F> within = hn::And(hn::Gt(middle.slope, zero),
+                                            hn::And(hn::Ge(newton, lo), hn::Le(newton, hi)));
+                const V<F> next = hn::IfThenElse(within, newton, hn::Mul(c(0.5), hn::Add(lo, hi)));
+                const V<F> moved = hn::Abs(hn::Sub(next, root));
+                root = hn::IfThenElse(moving, next, root);
+                moving = hn::And(moving, hn::Gt(moved, c(close_to_root * double{stage.rho})));
+            }
+            if (bounds.across.joined_slope == 0) {
+                const double turning = double{stage.across} * stage.rho / most_turn;
+                undecided =
+                    hn::Or(undecided, hn::And(crosses, hn::Lt(steepness, c(turning * turning))));
+            }
         }
         const std::uint64_t found_bits = bits_of(d, found), undecided_bits = bits_of(d, undecided),
-                            taken_bits = bits_of(d, taken);
-        alignas(64) float at[HWY_MAX_BYTES / sizeof(float)];
+                            taken_bits = bits_of(d, taken), enters_bits = bits_of(d, enters),
+                            end_bits = bits_of(d, at_end), crosses_bits = bits_of(d, crosses);
+        constexpr std::size_t lanes_at_most = HWY_MAX_BYTES / sizeof(float);
+        alignas(64) float at[lanes_at_most], from[lanes_at_most], f_from[lanes_at_most];
         hn::Store(root, d, at);
+        hn::Store(tau, d, from);
+        hn::Store(f_near, d, f_from);
         for (std::size_t k = 0; k < N && first + k < end_lane; ++k) {
-            if ((taken_bits >> k & 1) == 0) continue;
-            if ((undecided_bits >> k & 1) != 0) lanes.state[first + k] = Lanes::undecided;
-            if ((found_bits >> k & 1) == 0) continue;
-            lanes.state[first + k] = Lanes::hit;
-            // within the window, where it is looked at
-            lanes.t[first + k] =
-                std::clamp(window.middle + double{at[k]} * unit, window.begin,
-                           std::nextafter(window.end, window.begin));
+            const std::size_t lane = first + k;
+            const auto is = [&](std::uint64_t bits) { return (bits >> k & 1) != 0; };
+            if (!is(taken_bits)) continue;
+            std::int32_t& state = lanes.state[lane];
+            if (is(undecided_bits) || (is(enters_bits) && entering.end[lane] != window.begin)) {
+                state = Lanes::undecided;
+                continue;
+            }
+            if (!is(found_bits) && !is(end_bits)) continue;  // walks on
+            if (!is(enters_bits)) {
+                entering.t[lane] = window.middle + double{from[k]} * unit;
+                entering.f[lane] = f_from[k];
+                entering.seen[lane] = 0;
+            }
+            entering.end[lane] = window.end;
+            entering.pending[lane] = is(found_bits) ? 0 : 1;
+            if (entering.seen[lane] != 0) {
+                state = is(found_bits) ? Lanes::hit : Lanes::entering;
+                continue;
+            }
+            // The root is in this window, or was at its very begin.
+            if (is(found_bits) || is(crosses_bits)) {
+                entering.seen[lane] = 1;
+                state = Lanes::hit;
+                lanes.t[lane] = std::clamp(window.middle + double{at[k]} * unit, window.begin,
+                                           std::nextafter(window.end, window.begin));
+            } else {
+                state = Lanes::entering;
+            }
         }
     }
     return steps;

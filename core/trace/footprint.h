@@ -11,7 +11,11 @@
 // it stays below f + lateral + (f' + rho H + the slopes of what has no gradient) t + rise t^2 / 2.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "core/field/bundle_steps.h"
+#include "core/trace/ray_bundle.h"
 
 namespace ivory {
 
@@ -24,6 +28,15 @@ struct Footprint {
 struct FootprintBounds {
     double rho = 0;  // up to the window's end
     AcrossSums across;
+};
+
+// Of lanes on their way in from one window to the next: no ray of the pixel has a root before t, where the
+// middle's f is negative; up to the last window's end not all of them were certainly inside.
+struct EnteringRays {
+    static constexpr std::size_t room = RayBundle::room;
+    std::array<double, room> t, f, end;
+    std::array<std::uint8_t, room> seen;     // the middle's root is behind, and has been looked at
+    std::array<std::uint8_t, room> pending;  // see PacketSteps::certify
 };
 
 }  // namespace ivory

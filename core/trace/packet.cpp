@@ -138,8 +138,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
 
 void PacketTracer::certify(const Field& field, const ElementList& list, const RayBundle& rays,
                            const Footprint& footprint, const Settings& settings,
-                           BundleIsolations& isolations, BundleSurfaces& surfaces,
-                           Counts& counts) {
+                           BundleIsolations& isolations, BundleSurfaces& surfaces, Counts& counts) {
     const auto leave_all = [&] {
         std::fill_n(isolations.status.begin(), rays.count, Status::unresolved);
     };
@@ -153,26 +152,33 @@ void PacketTracer::certify(const Field& field, const ElementList& list, const Ra
     lanes_.t_hi = isolations.t_hi.data();
     take(rays, true);
     const double limit = exact_limit(field, rays.bundle);
-    descent_.begin(parts_, lanes_.rays,
-                   budget + static_cast<int>(parts_.size()) * budget_of_part);
-    const auto wanted = [&](const BundlePart& part, double, double) {
-        return any(part, Lanes::walking);
+    descent_.begin(parts_, lanes_.rays, budget + static_cast<int>(parts_.size()) * budget_of_part);
+    const auto goes_on = [&](const BundlePart& part) {
+        return any(part, Lanes::walking) || any(part, Lanes::entering);
     };
+    const auto wanted = [&](const BundlePart& part, double, double) { return goes_on(part); };
+    std::fill_n(entering_.pending.begin(), rays.count, std::uint8_t{0});
     while (Window* const window = descent_.next(wanted)) {
         const BundlePart part = descent_.part();
         if (!window->coarse_usable) {
             leave(*window, part);
+            replace(part, Lanes::entering, Lanes::undecided);
         } else {
             const FootprintBounds bounds{footprint.radius + window->end * footprint.spread,
                                          descent_.field().bound_across()};
             const std::uint64_t steps = packet_steps().certify(
                 *window, bounds, descent_.field().threshold(), descent_.field().unit(), part.first,
-                part.end, lanes_, counts.stop);
+                part.end, lanes_, entering_, counts.stop);
             counts.evaluations += steps;
             counts.element_evaluations += steps * (window->strong.size + window->weak.size);
             surface_in(*window, part, field, limit, surfaces, counts.stop);
+            for (std::size_t k = part.first; k < part.end; ++k) {
+                if (entering_.pending[k] == 0) continue;
+                entering_.pending[k] = 0;
+                lanes_.state[k] = Lanes::entering;
+            }
         }
-        if (counts.stop.requested() || !any(parts_[0], Lanes::walking)) break;
+        if (counts.stop.requested() || !goes_on(parts_[0])) break;
     }
     if (counts.stop.requested()) {
         leave_all();

@@ -44,8 +44,8 @@ class PacketTracer {
     // are proved of all rays of the pixel, t being about the middle's root; unresolved says no more than
     // that. `surfaces` as in `isolate`.
     void certify(const Field& field, const ElementList& list, const RayBundle& rays,
-                 const Footprint& footprint, const Settings& settings,
-                 BundleIsolations& isolations, BundleSurfaces& surfaces, Counts& counts);
+                 const Footprint& footprint, const Settings& settings, BundleIsolations& isolations,
+                 BundleSurfaces& surfaces, Counts& counts);
 
     // Normal and colour at m[k] of ray k, where that is finite; the others stay. Those that are not
     // `found` then have to be found by other means.
@@ -85,6 +85,7 @@ class PacketTracer {
 
     Descent descent_;
     Lanes lanes_;
+    EnteringRays entering_;
     std::vector<BundlePart> parts_;
     std::vector<std::uint32_t> index_;  // of hits in a window, their t and what is found there
     std::vector<double> t_;

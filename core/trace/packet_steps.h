@@ -33,6 +33,7 @@ struct Lanes {
         doubtful,   // float cannot decide on what happens in this window
         undecided,  // to be traced by other means from t_lo on: f < 0 up to there; the first root
                     // lies before t_hi, where that is finite
+        entering,   // of the middle of a pixel: on the way in (EnteringRays)
         unused,
     };
 
@@ -85,12 +86,14 @@ struct PacketSteps {
                              Lanes::State pinned, Lanes::State otherwise, Lanes& lanes,
                              Cancellation& stop);
 
-    // Of walking lanes, each the middle of a pixel (core/trace/footprint.h): those whose pixel is certainly
-    // hit become hits, t about the middle's root; those that nothing is certain of are undecided. Counts
-    // pairs of a lane and a step.
+    // Of walking and entering lanes, each the middle of a pixel (core/trace/footprint.h): those whose pixel
+    // is certainly hit become hits, t about the middle's root; those that nothing is certain of are
+    // undecided. What comes to the window's end on the way in becomes a hit too if its root lies in
+    // the window, to be looked at, and is `pending`: it is entering afterwards. Counts pairs of a lane and a
+    // step.
     std::uint64_t (*certify)(const Window& window, const FootprintBounds& bounds, double threshold,
                              double unit, std::size_t first, std::size_t end, Lanes& lanes,
-                             Cancellation& stop);
+                             EnteringRays& entering, Cancellation& stop);
 
     // Normal and colour of those hits of first .. end whose t lies in the window and below `limit`,
     // in float: within 2^-8, or nx = NaN where float might lose more.

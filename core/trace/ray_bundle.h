@@ -40,6 +40,15 @@ struct RayBundle {
         dz[count] = direction.z;
         ++count;
     }
+    // One that has its own origin, if it has_origins.
+    void add(const Ray& ray) {
+        if (has_origins) {
+            ox[count] = ray.origin.x;
+            oy[count] = ray.origin.y;
+            oz[count] = ray.origin.z;
+        }
+        add(ray.direction);
+    }
 };
 
 }  // namespace ivory

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "core/math/instruction_sets.h"
+#include "core/math/vec3.h"
 #include "tests/app/cli/run_ivory.h"
 #include "tests/ordinary_user.h"
 
@@ -123,6 +126,74 @@ TEST(CommandLine, RenderWritesAllThatIsAskedFor) {
     for (const auto& [status, count] : statistics.at("pixels").items()) {
         EXPECT_EQ(count, statuses[status]) << status;
     }
+}
+
+// The answers are those of the larger picture, and the picture the same as without them but for a byte.
+TEST(CommandLine, SamplesAreThoseOfTheLargerPicture) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    ASSERT_EQ(
+        run_ivory({"render", figure_1, "-o", out + "a.png", "--size", "40x30", "--samples", "4",
+                   "--depth", out + "a.pfm", "--answers", out + "a.csv", "--stats", out + "a.json"})
+            .status,
+        0);
+    ASSERT_EQ(run_ivory({"render", figure_1, "-o", out + "b.png", "--size", "80x60", "--answers",
+                         out + "b.csv"})
+                  .status,
+              0);
+    EXPECT_EQ(bytes_of(out + "a.csv"), bytes_of(out + "b.csv"));
+    EXPECT_TRUE(bytes_of(out + "a.pfm").starts_with("Pf\n40 30\n"));
+    const Json statistics = Json::parse(bytes_of(out + "a.json"));
+    EXPECT_EQ(statistics.at("samples"), 4);
+    int pixels = 0;
+    for (const auto& [status, count] : statistics.at("pixels").items()) pixels += count.get<int>();
+    EXPECT_EQ(pixels, 1200);
+}
+
+TEST(CommandLine, StereoPicturesAreThoseOfBothEyes) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    const auto render = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"render", figure_1, "--size", "40x30"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_ivory(words);
+    };
+    ASSERT_EQ(render({"-o", out + "a.png", "--stereo", "side-by-side", "--eyes", "0.2", "--depth",
+                      out + "a.pfm", "--answers", out + "a.csv"})
+                  .status,
+              0);
+    ASSERT_EQ(render({"-o", out + "b.png", "--stereo", "red-cyan"}).status, 0);
+    EXPECT_TRUE(bytes_of(out + "a.pfm").starts_with("Pf\n80 30\n"));
+    const std::vector<std::string> answers = lines_of(bytes_of(out + "a.csv"));
+    ASSERT_EQ(answers.size(), 2400u);
+    // The left eye's rays come first, all from one place, a fifth from the right one's.
+    const auto origin_of = [&](std::size_t line) {
+        Vec3d origin;
+        std::istringstream fields(answers[line]);
+        for (const std::size_t axis : {0, 1, 2}) {
+            std::string field;
+            std::getline(fields, field, ',');
+            origin[axis] = std::strtod(field.c_str(), nullptr);
+        }
+        return origin;
+    };
+    EXPECT_EQ(origin_of(0), origin_of(1199));
+    EXPECT_EQ(origin_of(1200), origin_of(2399));
+    const Vec3d apart = origin_of(1200) - origin_of(0);
+    EXPECT_NEAR(std::sqrt(dot(apart, apart)), 0.2, 1e-14);
+}
+
+TEST(CommandLine, AnOrthographicCameraHasNoTwoEyes) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path().string() + "/";
+    Json scene = Json::parse(bytes_of(figure_1));
+    scene["camera"]["projection"] = "orthographic";
+    std::ofstream(out + "a.ivory.json") << scene.dump();
+    const Finished run =
+        run_ivory({"render", out + "a.ivory.json", "-o", out + "a.png", "--stereo", "red-cyan"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("/camera: an orthographic camera has no two eyes"), std::string::npos)
+        << run.err;
 }
 
 // The rays of the answers, traced on their own, are answered the same.

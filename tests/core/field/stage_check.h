@@ -157,7 +157,8 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
     // A place that float can name.
     const auto tau = static_cast<float>((near_t - window.middle) / field.unit);
     const double t = window.middle + double{tau} * field.unit;
-    const Vec3d p = window.middle * (d - window.axis) + (t - window.middle) * d;
+    const Vec3d aside = origin - window.origin;
+    const Vec3d p = (window.middle * (d - window.axis) + aside) + (t - window.middle) * d;
     double exact = 0, most = 0;
     for_elements(field, all_parts(field), [&](std::span<const std::uint32_t> parts) {
         const double value = element_value(field, parts, origin + t * d) * field.scale;
@@ -170,7 +171,8 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
     const double kept_slope = fine.slope + faint.slope / field.unit;
     const double jump = fine.jump + faint.jump / field.unit;
     const auto middle = static_cast<float>(window.middle / field.unit);
-    const Vec3<float> p_near = tau * narrowed(d) + middle * narrowed(d - window.axis);
+    const Vec3<float> p_near = tau * narrowed(d) + (middle * narrowed(d - window.axis) +
+                                                    narrowed((1 / field.unit) * aside));
     const StageValue strong = stage_value(window.strong, field, p_near, narrowed(d));
     const StageValue weak = stage_value(window.weak, field, p_near, narrowed(d));
     double share = 0;

@@ -156,6 +156,89 @@ TEST(Camera, BundlesOfATileHoldTheRaysOfItsParts) {
     EXPECT_GT(held, 256);
 }
 
+TEST(Camera, AnOrthographicCamerasBundlesHoldItsRays) {
+    constexpr int width = 200, height = 120, i0 = 96, j0 = 48;
+    for (const double far : {1.0, 1e9}) {
+        Camera camera{{3 * far, 2, 7}, {3 * far + 1, 0.5, 0}, {0, 1, 0.2}, 40};
+        camera.projection = Camera::Projection::orthographic;
+        const View view = make_view(camera);
+        EXPECT_NEAR(2 * view.s, height_of(camera), 1e-15 * view.s);
+        const TileBundles bundles = tile_bundles(view, width, height, i0, j0);
+        const auto expect_held = [&](const Bundle& bundle, int i, int j) {
+            const Ray ray = primary_ray(view, width, height, i, j);
+            const Vec3l aside = widened(ray.origin) - widened(bundle.origin);
+            ASSERT_LE(length(aside), Real(bundle.radius)) << i << ", " << j;
+            ASSERT_LE(std::abs(dot(aside, widened(bundle.axis))),
+                      Real(bundle.spread) * Real(bundle.radius));
+            ASSERT_LE(length(widened(ray.direction) - widened(bundle.axis)), Real(bundle.spread));
+        };
+        for (int j = 0; j < 16; ++j) {
+            for (int i = 0; i < 16; ++i) {
+                const int quarter = j / 8 * 2 + i / 8, square = j % 8 / 4 * 2 + i % 8 / 4;
+                for (const int k : {0, 1 + quarter, 5 + quarter * 4 + square}) {
+                    expect_held(bundles[static_cast<std::size_t>(k)], i0 + i, j0 + j);
+                }
+                expect_held(bundle_around(view, width, height, {i0, j0, i0 + 16, j0 + 16}), i0 + i,
+                            j0 + j);
+            }
+        }
+        if (far > 1) continue;
+        // and are hardly wider than needed: half a diagonal
+        const double pixel = height_of(camera) / height;
+        EXPECT_LT(bundles[5].radius, 1.001 * 1.5 * std::sqrt(2.0) * pixel);
+        EXPECT_LT(bundles[5].spread, 1e-12);
+    }
+}
+
+TEST(Camera, AnOrthographicRayIsThatOfTheContract) {
+    Camera camera{{1, 2, 7}, {0.5, -1, 0.25}, {0.1, 1, 0}, 40};
+    camera.projection = Camera::Projection::orthographic;
+    camera.height = 3;
+    const View view = make_view(camera);
+    const Ray ray = primary_ray(view, 320, 180, 17, 101);
+    EXPECT_EQ(ray.direction, view.forward);
+    const double u = (2 * 17.5 / 320 - 1) * (320.0 / 180) * 1.5, v = (1 - 2 * 101.5 / 180) * 1.5;
+    const Vec3d expected = camera.position + u * view.right + v * view.top;
+    const Vec3d off = ray.origin - expected;
+    EXPECT_LT(std::sqrt(dot(off, off)), 1e-14);
+    EXPECT_THROW((void)eye_of(view, Eye::left, 0.1), Error);
+}
+
+// Both eyes see a point of the window in the same pixel; one that is as far again behind it half the eyes'
+// distance to the outside.
+TEST(Camera, EyesLookThroughTheSameWindow) {
+    const View view = make_view({{1, 2, 7}, {0.5, -1, 0.25}, {0.1, 1, 0}, 40});
+    constexpr int width = 320, height = 180;
+    const double z = std::sqrt(
+        dot(view.camera.target - view.camera.position, view.camera.target - view.camera.position));
+    EXPECT_DOUBLE_EQ(usual_eye_distance(view.camera), z / 30);
+    for (const Eye eye : {Eye::left, Eye::right}) {
+        const View seen = eye_of(view, eye, 0.4);
+        for (const int i : {0, 50, 319}) {
+            for (const int j : {0, 90, 179}) {
+                const Ray from_eye = primary_ray(seen, width, height, i, j);
+                const Ray from_middle = primary_ray(view, width, height, i, j);
+                const double t_eye = z / dot(from_eye.direction, view.forward);
+                const double t_middle = z / dot(from_middle.direction, view.forward);
+                const Vec3d off = (from_eye.origin + t_eye * from_eye.direction) -
+                                  (from_middle.origin + t_middle * from_middle.direction);
+                EXPECT_LT(std::sqrt(dot(off, off)), 1e-13);
+                // twice as far away
+                const Vec3d behind = (from_eye.origin + 2 * t_eye * from_eye.direction) -
+                                     (from_middle.origin + 2 * t_middle * from_middle.direction);
+                EXPECT_NEAR(dot(behind, view.right), eye == Eye::left ? 0.2 : -0.2, 1e-13);
+            }
+        }
+        const Cone cone = cone_around(seen, width, height, {32, 64, 48, 80});
+        for (int j = 64; j < 80; ++j) {
+            for (int i = 32; i < 48; ++i) {
+                const Vec3d d = primary_ray(seen, width, height, i, j).direction;
+                ASSERT_LE(sine_between(cone.axis, d), cone.sine);
+            }
+        }
+    }
+}
+
 TEST(Camera, AConeIsNoWiderThanItsCorners) {
     const View view = make_view({{2.2, 2.6, 7.2}, {0.1, 0, -0.3}, {0, 1, 0}, 40});
     const PixelRect rect{16, 32, 32, 48};

@@ -756,6 +756,155 @@ TEST(Render, NoAnswerRestsOnWhatIsSkipped) {
     }
 }
 
+// The samples of a pixel, from the larger picture.
+struct Samples {
+    std::set<Status> status;
+    Color sum;
+};
+
+// Pixel by pixel.
+std::vector<Samples> samples_of(const Picture& picture, int w, int h, int n) {
+    Canvas larger(w * n, h * n, true);
+    render(picture, larger, {.task = Task::trace});
+    std::vector<Samples> samples(static_cast<std::size_t>(w * h));
+    for (int j = 0; j < h * n; ++j) {
+        for (int i = 0; i < w * n; ++i) {
+            const std::size_t p = larger.frame.at(i, j);
+            samples[static_cast<std::size_t>(j / n * w + i / n)].status.insert(
+                larger.frame.status[p]);
+        }
+    }
+    return samples;
+}
+
+int most_apart(const Rgba8& a, const Rgba8& b) {
+    return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+// The contract's promise: of pixels whose samples differ in status the picture is their mean, of all
+// others within a byte of it.
+TEST(Render, SeveralSamplesArePromisedMeans) {
+    Scene orthographic = mixed_scene();
+    orthographic.camera->projection = Camera::Projection::orthographic;
+    std::size_t middles = 0, apart = 0, mixed = 0;
+    for (const Scene& scene :
+         {mixed_scene(), orthographic, tools::random_scene({.elements = 12}, 5),
+          tools::random_scene({.elements = 40, .only = tools::ElementKind{Shape::point}}, 8)}) {
+        for (const int n : {2, 3, 4}) {
+            SCOPED_TRACE(std::to_string(n * n) + " samples");
+            const Picture picture = picture_of(scene);
+            Canvas canvas(frame_width, frame_height, false),
+                larger(n * frame_width, n * frame_height, true);
+            SampledPicture sampled(canvas, n, false);
+            const JobReport report =
+                render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
+            ASSERT_TRUE(report.complete);
+            render(picture, larger, {});
+            const SampledPicture mean = mean_of(picture, larger, n);
+            const std::vector<Samples> samples = samples_of(picture, frame_width, frame_height, n);
+            for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+                const int off = most_apart(sampled.color[p], mean.color[p]);
+                ASSERT_LE(off, 1) << p % frame_width << ", " << p / frame_width;
+                apart += off != 0;
+                if (samples[p].status.size() > 1) {
+                    ++mixed;
+                    // but for what float leaves of a sum near a byte's edge
+                    ASSERT_LE(off, 1);
+                }
+            }
+            middles += samples.size();
+            EXPECT_EQ(sampled.pixels.size(), mean.pixels.size());
+            for (std::size_t tile = 0; tile < mean.pixels.size(); ++tile) {
+                ASSERT_EQ(sampled.pixels[tile], mean.pixels[tile]) << tile;
+            }
+        }
+    }
+    std::printf("%zu pixels, %zu of mixed status, %zu a byte away\n", middles, mixed, apart);
+    EXPECT_GT(mixed, 1000u);
+    EXPECT_LT(apart, middles / 50);
+}
+
+// Most pixels are known from fewer samples, and no thread, tile or order is seen in what comes out.
+TEST(Render, SeveralSamplesCostFewMore) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas canvas(frame_width, frame_height, false);
+    constexpr int n = 4;
+    SampledPicture sampled(canvas, n, false), all(canvas, n, true);
+    const JobReport some = render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
+    const JobReport every = render(picture, canvas, {.task = Task::sample, .sampled = &all});
+    EXPECT_LT(3 * some.counts.evaluations, every.counts.evaluations);
+    EXPECT_GT(some.elements_reached, 3u);
+    SampledPicture again(canvas, n, false);
+    render(picture, canvas, {.threads = 3, .task = Task::sample, .sampled = &again});
+    std::vector<std::uint8_t> selected(canvas.tiles.size());
+    for (std::size_t tile = 0; tile < selected.size(); tile += 3) selected[tile] = 1;
+    SampledPicture few(canvas, n, false);
+    render(picture, canvas, {.task = Task::sample, .sampled = &few, .selected = selected});
+    for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+        ASSERT_EQ(again.color[p], sampled.color[p]);
+        const std::size_t tile = canvas.grid.tiles.at(static_cast<int>(p) % frame_width,
+                                                      static_cast<int>(p) / frame_width);
+        if (selected[tile] != 0) {
+            ASSERT_EQ(few.color[p], sampled.color[p]);
+        }
+    }
+    for (std::size_t tile = 0; tile < selected.size(); ++tile) {
+        const auto& count = sampled.pixels[tile];
+        EXPECT_EQ(std::accumulate(count.begin(), count.end(), 0),
+                  static_cast<int>(canvas.grid.tiles.rect(tile).area()));
+        EXPECT_EQ(few.pixels[tile] == count, selected[tile] != 0) << tile;
+    }
+}
+
+// The least t of all samples, on the canvas of an orthographic camera too.
+TEST(Render, TheDepthOfSamplesIsTheLeast) {
+    const Picture picture = picture_of(mixed_scene());
+    Canvas canvas(frame_width, frame_height, false),
+        larger(2 * frame_width, 2 * frame_height, true);
+    SampledPicture sampled(canvas, 2, true);
+    render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
+    render(picture, larger, {});
+    const SampledPicture mean = mean_of(picture, larger, 2);
+    int finite = 0;
+    for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
+        if (mean.depth[p] == infinity<double>) {
+            ASSERT_EQ(sampled.depth[p], mean.depth[p]);
+            continue;
+        }
+        ASSERT_NEAR(sampled.depth[p], mean.depth[p], 2e-6);
+        ++finite;
+    }
+    EXPECT_GT(finite, 1000);
+}
+
+// Each ray of an orthographic picture is answered as it is alone.
+TEST(Render, OrthographicPixelsAreTheAnswersOfTheirRays) {
+    Scene scene = mixed_scene();
+    scene.camera->projection = Camera::Projection::orthographic;
+    const Picture picture = picture_of(scene);
+    const ElementList all = all_elements(*picture.field);
+    Canvas canvas(frame_width, frame_height, false);
+    const JobReport report = render(picture, canvas, {});
+    int hits = 0;
+    for (int j = 0; j < frame_height; ++j) {
+        for (int i = 0; i < frame_width; ++i) {
+            Counts counts;
+            const Answer answer = trace(*picture.field, all,
+                                        primary_ray(picture.view, frame_width, frame_height, i, j),
+                                        *picture.method, picture.options, counts);
+            const std::size_t p = canvas.frame.at(i, j);
+            ASSERT_EQ(canvas.frame.status[p], answer.isolation.status) << i << ", " << j;
+            if (!possibly_hit(answer.isolation.status)) continue;
+            ++hits;
+            ASSERT_LE(canvas.frame.t_lo[p], answer.isolation.t.hi);
+            ASSERT_GE(canvas.frame.t_hi[p], answer.isolation.t.lo);
+        }
+    }
+    EXPECT_GT(hits, 1500);
+    // in packets, not one by one
+    EXPECT_LT(report.counts.skipping.rays_alone, canvas.frame.size() / 100);
+}
+
 TEST(Render, AnEmptySceneIsAllBackground) {
     Scene scene;
     Canvas canvas(33, 20, true);

@@ -55,6 +55,21 @@ TEST(SceneFault, IsFoundAtItsPlace) {
         {"/background/2", [](Scene& s) { s.background.z = std::nextafter(1.0, 2.0); }},
         {"/background/1", [](Scene& s) { s.background.y = nan; }},
         {"/camera/position/2", [](Scene& s) { s.camera->position.z = infinity; }},
+        {"/camera/height", [](Scene& s) { s.camera->height = 0; }},
+        {"/camera/height", [](Scene& s) { s.camera->height = infinity; }},
+        {"/views/1/name",
+         [](Scene& s) {
+             s.views = {{"a", *s.camera}, {"a", *s.camera}};
+         }},
+        {"/views/0/name",
+         [](Scene& s) {
+             s.views = {{"", *s.camera}};
+         }},
+        {"/views/0/camera/fov",
+         [](Scene& s) {
+             s.views = {{"a", *s.camera}};
+             s.views[0].camera.fov = 180;
+         }},
         {"/camera/target/0", [](Scene& s) { s.camera->target.x = nan; }},
         {"/camera/target", [](Scene& s) { s.camera->target = s.camera->position; }},
         {"/camera/target",

@@ -55,6 +55,20 @@ Scene example_scene() {
     return scene;
 }
 
+TEST(ParseScene, ReadsAndWritesCamerasAndViews) {
+    Scene scene = example_scene();
+    scene.camera->projection = Camera::Projection::orthographic;
+    scene.camera->height = 2.5;
+    scene.views = {{"from \"above\"", {{0, 9, 0}, {0, 0, 0}, {1, 0, 0}, 30}},
+                   {"side", *scene.camera}};
+    EXPECT_EQ(parse_scene(write_scene(scene), "x"), scene);
+    const std::string text = write_scene(scene);
+    EXPECT_NE(text.find("\"projection\": \"orthographic\", \"height\": 2.5"), std::string::npos);
+    // What is usual is not written.
+    EXPECT_EQ(write_scene(example_scene()).find("projection"), std::string::npos);
+    EXPECT_EQ(write_scene(example_scene()).find("views"), std::string::npos);
+}
+
 TEST(ParseScene, ReadsTheExampleOfTheFormat) {
     EXPECT_EQ(parse_scene(example, "x"), example_scene());
 }

@@ -31,19 +31,30 @@ namespace {
 using tools::Random;
 using tools::RayKind;
 
-// `count` rays around one, at most about `spread` away from it.
+// `count` rays around one, at most about `spread` away from it, from origins about `radius` around its own.
 std::unique_ptr<RayBundle> bundle_around(const Ray& ray, double spread, std::size_t count,
-                                         Random& random) {
+                                         Random& random, double radius = 0) {
     auto rays = std::make_unique<RayBundle>();
+    rays->has_origins = radius > 0;
     const Vec3d axis = unit(unit(ray.direction));
-    double farthest = 0;
+    double farthest = 0, farthest_origin = 0, farthest_along = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const Vec3d d = unit(unit(axis + spread * random.in_cube(0.5)));
-        rays->add(d);
+        Vec3d origin = ray.origin;
+        if (radius > 0) {
+            origin = origin + random.uniform(0, radius) * unit(cross(axis, random.in_cube(1)));
+        }
+        rays->add({origin, d});
+        const Vec3d aside = origin - ray.origin;
+        farthest_origin = std::max(farthest_origin, std::sqrt(dot(aside, aside)));
+        farthest_along = std::max(farthest_along, std::abs(dot(aside, axis)));
         const Vec3d off = d - axis;
         farthest = std::max(farthest, std::sqrt(dot(off, off)));
     }
-    rays->bundle = {ray.origin, axis, farthest * 1.001 + 1e-15};
+    rays->bundle = {ray.origin, axis, farthest * 1.001 + 1e-15, farthest_origin * 1.001};
+    if (farthest_origin > 0) {
+        rays->bundle.spread += (farthest_along + 1e-15) / farthest_origin * 1.01;
+    }
     return rays;
 }
 
@@ -88,15 +99,18 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                 }
                 ++bundles;
                 const double spread = std::pow(10.0, random.uniform(-5, -0.7));
-                const auto rays = bundle_around(ray, spread, 5 + random.below(40), random);
+                // Every third one from origins side by side.
+                const double radius = bundles % 3 == 0 ? std::pow(10.0, random.uniform(-4, -1)) : 0;
+                const auto rays = bundle_around(ray, spread, 5 + random.below(40), random, radius);
                 BundleIsolations found;
                 Counts counts;
                 packets.isolate(field, list, *rays, settings, found, nullptr, counts);
                 // Every third of them without the others.
                 const auto some = std::make_unique<RayBundle>();
                 some->bundle = rays->bundle;
+                some->has_origins = rays->has_origins;
                 for (std::size_t k = 0; k < rays->size(); k += 3) {
-                    some->add(rays->ray(k).direction);
+                    some->add(rays->ray(k));
                 }
                 BundleIsolations again;
                 packets.isolate(field, list, *some, settings, again, nullptr, counts);
