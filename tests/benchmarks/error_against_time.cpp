@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <ctime>
 #include <memory>
+#include <mutex>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -64,7 +67,17 @@ JobReport paint(const Picture& picture, Canvas& canvas, const Options& options, 
     settings.keep_lists = keep_lists;
     FrameJob job(picture, canvas, settings);
     const auto limit = std::chrono::milliseconds(static_cast<long>(1000 * options.limit));
+    // Where the job has no threads it works within wait_for, which looks at the time between tiles alone.
+    std::jthread clock([&](const std::stop_token& done) {
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any bell;
+        bell.wait_for(lock, done, limit, [] { return false; });
+        if (!done.stop_requested()) job.cancel();
+    });
     if (!job.wait_for(limit)) job.cancel();
+    clock.request_stop();
+    clock.join();
     return job.finish();
 }
 
