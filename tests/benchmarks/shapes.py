@@ -91,7 +91,8 @@ def write(name, elements):
 
 
 def hits(path, arguments):
-    return host.render(path, "--size", "480x270", "--threads", arguments.threads,
+    size = min("480x270", arguments.size, key=lambda text: int(text.partition("x")[0]))
+    return host.render(path, "--size", size, "--threads", arguments.threads,
                        "--depth", os.devnull)["pixels"]["hit"]
 
 
