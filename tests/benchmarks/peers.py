@@ -7,7 +7,7 @@ gradient that a seeded sample of the box shows, plus 5 %, as its manual advises.
 in two pictures of 16 bits a channel, high and low digits, which are not timed. isoray's is that of
 `bisect_trace` and `newton_refine`, on an inclusion function made for these fields: the distance to a
 skeleton changes by no more than the place does. What is not installed is left out, with a note.
-Scenes of few elements with Blinn's kernel only."""
+Scenes of few points, segments and circles with Blinn's kernel only."""
 
 import argparse
 import csv
@@ -374,6 +374,11 @@ def main():
     for name in arguments.scenes.split(","):
         path = scenes.write(host.BUILD / "scenes", [name])[name]
         scene = json.loads(path.read_text())
+        for element in scene["elements"]:
+            if (element["shape"] not in ("point", "segment", "circle")
+                    or element.get("kernel", "blinn") != "blinn"
+                    or isinstance(element.get("width"), list)):
+                raise SystemExit(f"peers: {name} has what they are not given here: {element}")
         info = json.loads(host.output_of([str(host.IVORY), "info", str(path), "--json"]))
         view = View(scene["camera"], width, height)
         reference = Reference(path, width, height)

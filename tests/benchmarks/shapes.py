@@ -59,10 +59,11 @@ MAKERS = {"disc": scenes.disc, "taper": taper, "polygon": scenes.polygon, "curve
           "polyline": scenes.chain}
 
 
-def pairs(shape, count, wanted):
-    """So many elements with the rule for `mixed` of count, and what replaces each: lists."""
+def pairs(shape, count, thin, wanted):
+    """So many elements with the rule for `mixed` of count, their widths times `thin`, and what replaces
+    each: lists."""
     kind = shape.partition("-")[0]
-    s, w = (x * math.sqrt(1000 / count) for x in (0.12, 0.04))
+    s, w = (x * math.sqrt(1000 / count) for x in (0.12, 0.04 * thin))
     numbers = random.Random(scenes.SEED)
     for _ in range(wanted):
         center, axis = scenes.in_ball(numbers), scenes.direction(numbers)
@@ -134,7 +135,7 @@ def timed(path, arguments, repeat):
 
 def measured(shape, arguments):
     count = arguments.elements
-    made = list(itertools.islice(pairs(shape, count, 4 * count), 4 * count))
+    made = list(itertools.islice(pairs(shape, count, arguments.thin, 4 * count), 4 * count))
     ours = write(f"{shape}-{count}", [element for element, _ in made[:count]])
     segments = [segment for _, replaced in made for segment in replaced]
     name = f"{shape}-{count}-segments"
@@ -155,7 +156,7 @@ def measured(shape, arguments):
         return statistics.median(map(of, runs))
 
     row = {
-        "shape": shape, "elements": count, "segments": len(segments),
+        "shape": shape, "elements": count, "thin": arguments.thin, "segments": len(segments),
         "widths": segments[0]["width"] / made[0][1][0]["width"], "width": one["width"],
         "height": one["height"], "threads": arguments.threads, "tolerance": arguments.tolerance,
         "pairs": len(runs), "hits": one["pixels"]["hit"], "hits_of_segments": other["pixels"]["hit"],
@@ -181,6 +182,7 @@ def main():
     parser.add_argument("--tolerance", default="1e-6")
     parser.add_argument("--threads", default=str(os.cpu_count()))
     parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--thin", type=float, default=1, help="all widths are multiplied by that")
     parser.add_argument("--match", choices=["width", "number"], default="width")
     parser.add_argument("--output", type=pathlib.Path, default=host.RESULTS)
     arguments = parser.parse_args()
