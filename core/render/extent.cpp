@@ -255,15 +255,17 @@ class Search {
         return support(part, frustum_.normal[side]);
     }
 
-    // A share of what is seen at the distance that the sides known so far ask for. The sides of a
-    // ball around the middle are touched nearer to the eye, at 1 / (1 + k^2) of that distance.
+    // A share of what is seen at the distance, or with the half height, that the sides known so far
+    // ask for. The sides of a ball around the middle are touched nearer to the eye, at 1 / (1 + k^2)
+    // of that distance.
     [[nodiscard]] double tolerance(std::size_t side) const {
         const double distance =
             std::max({(reach_[to_right] + reach_[to_left]) / (2 * frustum_.half_width),
                       (reach_[to_top] + reach_[to_bottom]) / (2 * frustum_.half_height), 0.0});
         if (side >= to_far) return depth_tolerance * distance;
         const double half = side < to_top ? frustum_.half_width : frustum_.half_height;
-        return 2 * side_tolerance * distance * half / (1 + half * half);
+        const double farther = frustum_.is_parallel ? 1 : 1 + half * half;
+        return 2 * side_tolerance * distance * half / farther;
     }
 
     // The one that is known worst, compared with its tolerance; `sides` where all are good enough.
@@ -313,13 +315,20 @@ class Search {
 }  // namespace
 
 Frustum frustum_of(const View& view, double aspect, double share) {
-    Frustum frustum{view.forward,   view.right, view.top, share * view.s * aspect,
-                    share * view.s, {}};
+    Frustum frustum;
+    frustum.forward = view.forward;
+    frustum.right = view.right;
+    frustum.top = view.top;
+    frustum.is_parallel = view.is_orthographic();
+    const double half = frustum.is_parallel ? share : share * view.s;
+    frustum.half_width = half * aspect;
+    frustum.half_height = half;
     const Vec3d back = -1.0 * frustum.forward;
-    frustum.normal = {frustum.right + frustum.half_width * back,
-                      -1.0 * frustum.right + frustum.half_width * back,
-                      frustum.top + frustum.half_height * back,
-                      -1.0 * frustum.top + frustum.half_height * back,
+    const Vec3d outward = frustum.is_parallel ? Vec3d{} : back;
+    frustum.normal = {frustum.right + frustum.half_width * outward,
+                      -1.0 * frustum.right + frustum.half_width * outward,
+                      frustum.top + frustum.half_height * outward,
+                      -1.0 * frustum.top + frustum.half_height * outward,
                       frustum.forward,
                       back};
     return frustum;

@@ -16,12 +16,16 @@ namespace ivory {
 // two along the view:
 //   p is within the window of half width k at distance 1 before the eye e
 //       <=>  (p - e) . right <= k (p - e) . forward  and  -(p - e) . right <= k (p - e) . forward,
-// which adds up to (p - e) . forward >= 0; likewise for top.
+// which adds up to (p - e) . forward >= 0; likewise for top. Of an orthographic camera the planes are
+// parallel in pairs, at the distance of the window's half width and height from its middle e:
+//   p is within the window  <=>  (p - e) . right <= k s  and  -(p - e) . right <= k s,
+// k for a picture two units high and s half the height of the picture.
 enum Side : std::size_t { to_right, to_left, to_top, to_bottom, to_far, to_near, sides };
 
 struct Frustum {
     Vec3d forward, right, top;
-    double half_width = 0, half_height = 0;
+    double half_width = 0, half_height = 0;  // k, of right and of top
+    bool is_parallel = false;                // of an orthographic camera
     std::array<Vec3d, sides> normal;
 };
 

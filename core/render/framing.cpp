@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/math/direction.h"
@@ -24,31 +25,45 @@ bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+// Where a perspective camera sees so much from top to bottom.
+double distance_seeing(double height, double fov) {
+    return height / 2 / std::tan(fov / 2 * std::numbers::pi / 180);
+}
+
 // All that is to be framed is within the middle of the picture of this very camera, whose numbers
 // were rounded. With n the normal that `extent` was found for, m the one of the camera's own frame,
 // e the eye, and p within `radius` of the middle c:
-//   m . (p - e) <= n . (p - c) + |m - n| radius - m . (e - c).
+//   m . (p - e) <= n . (p - c) + |m - n| radius - m . (e - c),
+// which has to be below 0; of an orthographic camera below half the window's width or height, and
+// below 0 of its plane.
 bool is_framed(const Extent& extent, const Frustum& wanted, const Camera& camera, double aspect) {
     if (find_fault(camera)) return false;
     const Vec3d away = camera.position - extent.middle;
     Frustum frustum;
+    double half_height = 0;
     try {
-        frustum = frustum_of(make_view(camera), aspect, aimed_share);
+        const View view = make_view(camera);
+        half_height = view.s;
+        frustum = frustum_of(view, aspect, aimed_share);
     } catch (const Error&) {
         return false;  // the frame is lost to rounding: farther away it is not
     }
-    for (std::size_t side = 0; side < to_far; ++side) {
+    for (std::size_t side = 0; side < sides; ++side) {
+        if (side == to_far || (side == to_near && !frustum.is_parallel)) continue;
+        const double half = side < to_top ? frustum.half_width : frustum.half_height;
+        const double limit = frustum.is_parallel && side < to_far ? half * half_height : 0;
         const Vec3d &m = frustum.normal[side], &n = wanted.normal[side];
         const double rounding = 64 * slack * (length(away) + extent.radius) * length(m);
         const double beyond =
             extent.reach[side] + length(m - n) * extent.radius - dot(m, away) + rounding;
-        if (!(beyond < 0)) return false;
+        if (!(beyond < limit)) return false;
     }
     return true;
 }
 
 // The eye is so far back that both pairs of opposite planes leave room, and half way between the
-// planes of each.
+// planes of each. An orthographic camera's window is so large, and stands as far before the target as
+// another camera's eye would, but before all that is seen.
 Camera camera_for(const Extent& extent, const Frustum& frustum, const Camera& seen_as,
                   double aspect) {
     const Reach& reach = extent.reach;
@@ -66,7 +81,14 @@ Camera camera_for(const Extent& extent, const Frustum& frustum, const Camera& se
     const double size = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
     const double least = size > 0 ? least_step * size : needed + depth > 0 ? 0.0 : 1.0;
     for (double more = 0x1p-12; more < 0x1p60; more *= 2) {
-        const double away = std::max(needed * (1 + more) + depth, least * (1 + more));
+        double away = std::max(needed * (1 + more) + depth, least * (1 + more));
+        if (frustum.is_parallel) {
+            const double height = std::max(2 * needed * (1 + more), least);
+            const double behind_plane = 0.5 * (reach[to_far] + reach[to_near]);
+            camera.height = height;
+            away = std::max({distance_seeing(height, seen_as.fov), behind_plane + height / 2,
+                             least * (1 + more)});
+        }
         camera.position = extent.middle + (across + (depth - away) * frustum.forward);
         if (!finite(camera.position) || !finite(camera.target)) break;
         if (is_framed(extent, frustum, camera, aspect)) return camera;

@@ -6,7 +6,8 @@
 // the solid {f >= 0} reaches along each of these normals. Each is bounded by planes beyond which
 // the elements cannot add up to T, then by branch and bound over cubes: those in which f < 0
 // certainly holds are left out, and the one that reaches farthest is cut into eight, until the
-// bound is within a hundredth of the picture of a point of the solid.
+// bound is within a hundredth of the picture of a point of the solid. Of an orthographic camera the
+// planes are those of the window's edges along the view, and what follows is its place and height.
 #pragma once
 
 #include <cstddef>
@@ -27,11 +28,12 @@ struct Framing {
     std::size_t cells = 0, element_evaluations = 0;
 };
 
-// The camera with the direction of view, `up` and `fov` of `seen_as`, a valid one, that frames the
-// surface in a picture with `aspect` = width / height, > 0. Its target is in the middle of the
-// surface's depth. Depends on the arguments alone. The work is limited: a few milliseconds for a
-// few elements, less than compile for many, and up to half a second where 100,000 overlap so much that
-// thousands matter everywhere. Throws Error where the scene is too large for doubles.
+// The camera with the projection, direction of view, `up` and `fov` of `seen_as`, a valid one, that
+// frames the surface in a picture with `aspect` = width / height, > 0. Its target is in the middle of
+// the surface's depth; of an orthographic one the whole surface is proved to lie behind its plane.
+// Depends on the arguments alone. The work is limited: a few milliseconds for a few elements, less
+// than compile for many, and up to half a second where 100,000 overlap so much that thousands matter
+// everywhere. Throws Error where the scene is too large for doubles.
 [[nodiscard]] Framing frame_surface(const Field& field, const Camera& seen_as, double aspect);
 
 // The camera of a scene without one: framed from the direction (0.4, 0.3, 1).

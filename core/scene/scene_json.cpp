@@ -362,6 +362,14 @@ void read(const Node& node, Scene& scene) {
     read_list(members.required("elements"), "a list of elements", scene.elements);
 }
 
+// What the values say though each of them is what it has to be.
+void throw_fault(const SourceText& source, const JsonDocument& document,
+                 const std::optional<SceneFault>& fault) {
+    if (!fault) return;
+    const JsonValue value = nearest_to(document.root(), fault->pointer);
+    throw source.fault(value.offset(), fault->pointer, fault->message);
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& path, const Stop& stop) {
@@ -379,11 +387,19 @@ Scene parse_scene(std::string_view text, const std::string& name, const Stop& st
     Reading reading{source, Steps(stop)};
     Scene scene;
     read(Node{reading, document.root()}, scene);
-    if (const std::optional<SceneFault> fault = find_fault(scene, stop)) {
-        const JsonValue value = nearest_to(document.root(), fault->pointer);
-        throw source.fault(value.offset(), fault->pointer, fault->message);
-    }
+    throw_fault(source, document, find_fault(scene, stop));
     return scene;
+}
+
+Camera parse_camera(std::string_view text, const std::string& name) {
+    const SourceText source(text, name);
+    const JsonDocument document = parse_json(source);
+    const Stop never;
+    Reading reading{source, Steps(never)};
+    Camera camera;
+    read(Node{reading, document.root()}, camera);
+    throw_fault(source, document, find_fault(camera));
+    return camera;
 }
 
 }  // namespace ivory

@@ -26,6 +26,11 @@ namespace ivory {
 // `find_fault` (core/scene/scene_fault.h) finds one, for that text could not be read again.
 [[nodiscard]] std::string write_scene(const Scene& scene);
 
+// A camera alone, as it stands in a scene: the object on one line, and back again bit for bit.
+// Throw Error as parse_scene and write_scene do.
+[[nodiscard]] Camera parse_camera(std::string_view text, const std::string& name);
+[[nodiscard]] std::string write_camera(const Camera& camera);
+
 // Writes the file as core/scene/write_file.h does: whole, or not at all. Throws Error.
 void save_scene(const Scene& scene, const std::filesystem::path& path);
 

@@ -142,11 +142,16 @@ void append_list(std::string& text, const std::vector<Item>& items) {
     text += items.empty() ? "]" : "\n  ]";
 }
 
-// `label` is what a message calls the scene.
-std::string checked_text(const Scene& scene, const std::string& label) {
-    if (const std::optional<SceneFault> fault = find_fault(scene)) {
+// `label` is what a message calls the scene, or the part of it.
+template <class Part>
+void refuse_faulty(const Part& part, const std::string& label) {
+    if (const std::optional<SceneFault> fault = find_fault(part)) {
         throw Error(label + ": " + fault->pointer + ": " + fault->message);
     }
+}
+
+std::string checked_text(const Scene& scene, const std::string& label) {
+    refuse_faulty(scene, label);
     std::string text = "{\n  ";
     Members members(text, one_per_line);
     members.add("ivory", 1).add("threshold", scene.threshold).add("background", scene.background);
@@ -161,6 +166,13 @@ std::string checked_text(const Scene& scene, const std::string& label) {
 }  // namespace
 
 std::string write_scene(const Scene& scene) { return checked_text(scene, "the scene"); }
+
+std::string write_camera(const Camera& camera) {
+    refuse_faulty(camera, "the camera");
+    std::string text;
+    append_object(text, camera);
+    return text;
+}
 
 void save_scene(const Scene& scene, const std::filesystem::path& path) {
     write_file(path, checked_text(scene, file_label(path)));

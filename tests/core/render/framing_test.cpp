@@ -166,6 +166,53 @@ TEST(Framing, AnyDirectionAndFieldOfView) {
     }
 }
 
+// From any direction an orthographic picture is filled, and neither its sides nor its plane cut the
+// surface: from twice as far away and twice as high the same is hit.
+TEST(Framing, OrthographicPicturesAreFilledToo) {
+    const std::uint64_t seed = tools::announced_seed(20261130);
+    std::uint64_t n = 0;
+    for (const std::size_t elements : {1, 2, 5, 17, 40}) {
+        for (const double scale : {1e-6, 1.0, 1e6}) {
+            const Scene scene =
+                tools::random_scene({.elements = elements, .scale = scale}, seed + ++n);
+            SCOPED_TRACE("scene " + std::to_string(seed + n));
+            constexpr int height = 256;
+            // even, so that the larger picture has the same rays
+            const int width =
+                2 * static_cast<int>(std::lround(aspects[n % std::size(aspects)] * height / 2));
+            Camera from{{1.0 * static_cast<double>(n % 3) - 1, 0.3, 1}, {0, 0, 0}};
+            from.projection = Camera::Projection::orthographic;
+            const Framing framing =
+                frame_surface(compile(scene), from, static_cast<double>(width) / height);
+            const Camera& camera = framing.camera;
+            EXPECT_EQ(camera.projection, from.projection);
+            ASSERT_TRUE(camera.height);
+            if (framing.empty) continue;
+            const Seen seen = look(scene, camera, width, height);
+            EXPECT_GE(std::max(seen.width_share, seen.height_share), 0.75);
+            Camera wider = camera;
+            wider.height = 2 * *camera.height;
+            wider.position = camera.target + 2.0 * (camera.position - camera.target);
+            const Seen around = look(scene, wider, 2 * width, 2 * height);
+            EXPECT_EQ(around.count, seen.count);
+            for (const double share : {around.left, around.right, around.bottom, around.top}) {
+                EXPECT_LE(2 * std::abs(share), framed_share);
+            }
+        }
+    }
+}
+
+TEST(Framing, ABallFillsAnOrthographicPicturesHeight) {
+    const Scene ball = scene_of({{.skeleton = PointSkeleton{{1, -2, 3}}}});
+    Camera from{{0.4, 0.3, 1}, {0, 0, 0}};
+    from.projection = Camera::Projection::orthographic;
+    const Camera camera = frame_surface(compile(ball), from, 16.0 / 9).camera;
+    const double diameter = 2 * std::sqrt(std::log(2));
+    EXPECT_GE(framed_share * *camera.height, diameter);
+    EXPECT_NEAR(framed_share * *camera.height, diameter, 0.01 * diameter);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(camera.target[k], (Vec3d{1, -2, 3})[k], 1e-9);
+}
+
 TEST(Framing, AnEmptySurfaceIsTheUnitBox) {
     const Field none = compile(scene_of({}));
     const Camera box = default_camera(none, 1.5);

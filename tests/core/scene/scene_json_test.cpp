@@ -390,6 +390,39 @@ void with_standard_input(const fs::path& path, Call&& call) {
     std::clearerr(stdin);
 }
 
+TEST(ParseCamera, ReadsWhatWriteCameraWritesBitForBit) {
+    Camera camera{{0.1, -1.0 / 3, 1e300}, {5e-324, 0, 2}, {0, 0.3, 1}, 179.9};
+    for (const auto projection :
+         {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+        camera.projection = projection;
+        const std::string text = write_camera(camera);
+        EXPECT_EQ(parse_camera(text, "text"), camera);
+        EXPECT_EQ(text.find('\n'), std::string::npos);
+        // as it stands in a scene
+        Scene scene;
+        scene.camera = camera;
+        EXPECT_NE(write_scene(scene).find("\"camera\": " + text), std::string::npos);
+        camera.height = 0.1;
+    }
+    EXPECT_EQ(write_camera({{0, 0, 8}, {0, 0, 0}}),
+              R"({"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 40})");
+}
+
+TEST(ParseCamera, SaysWhatIsWrongAndWhere) {
+    const auto said = [](const char* text) {
+        return tests::error_line([&] { static_cast<void>(parse_camera(text, "it")); });
+    };
+    EXPECT_TRUE(said("").starts_with("it: "));
+    EXPECT_NE(said("[1]").find("an object with position and target"), std::string::npos);
+    EXPECT_NE(said(R"({"position": [0, 0, 1]})").find("target"), std::string::npos);
+    EXPECT_NE(said(R"({"position": [0, 0, 1], "target": [0, 0, 0], "fov": 200})").find("/fov"),
+              std::string::npos);
+    EXPECT_NE(tests::error_line([] {
+                  static_cast<void>(write_camera({{1, 1, 1}, {1, 1, 1}}));
+              }).find("the camera"),
+              std::string::npos);
+}
+
 TEST(ReadScene, ADashIsStandardInput) {
     const TemporaryFolder folder;
     std::ofstream(folder / "good") << example;
