@@ -33,8 +33,8 @@ struct PictureState {
     std::string
         fault;  // one line: why there is no picture of the wanted scene; empty: there is, or will be
 
-    // Row by row from the top: distance from the camera's position along the unit primary ray, +inf
-    // where nothing is hit; blocks of equal values while it is coarse. Valid until the frame's end.
+    // Row by row from the top: distance along the unit primary ray, from the camera's position or
+    // from an orthographic camera's plane, +inf where nothing is hit; blocks of equal values while it is coarse. Valid until the frame's end.
     std::span<const float> depth;
     // +inf outside of the picture too; `at` counts from the picture's top left.
     [[nodiscard]] float depth_at(WindowPoint at) const {

@@ -57,13 +57,14 @@ std::optional<double> distance_along(const Projection& view, const Vec3d& place,
         return std::copysign(dy * view.length_of_pixel(place), towards * dy);
     const auto seen = view.project(place);
     if (!seen) return std::nullopt;
-    const Vec3d sight = view.direction({seen->x + dx, seen->y + dy});
-    const Vec3d from_camera = place - view.camera().position;
-    const double t = dot(from_camera, facing) / dot(sight, facing);
+    const Ray sight = view.line_of_sight({seen->x + dx, seen->y + dy});
+    const Vec3d from_origin = place - sight.origin;
+    const double t = dot(from_origin, facing) / dot(sight.direction, facing);
     // near the line's vanishing point the smallest move would lead out of the world
     constexpr double farthest = 20;  // times as far away as it was
-    if (!(t > 0 && t <= farthest * length(from_camera))) return std::nullopt;
-    return dot(t * sight - from_camera, direction);
+    if (!view.is_orthographic() && !(t > 0 && t <= farthest * length(from_origin)))
+        return std::nullopt;
+    return dot(t * sight.direction - from_origin, direction);
 }
 
 std::optional<Vec3d> moved_place(const HandView& view, const Vec3d& place,

@@ -15,21 +15,23 @@ namespace {
 
 constexpr int ring_steps = 64, outline_steps = 96, most_balls = 24;
 
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
-
 Vec3d at_step(const Ring& ring, int step, int steps) {
     return ring.at(2 * std::numbers::pi * step / steps);
 }
 
 // A sphere of radius r at distance D is seen as the circle of radius r sqrt(1 - r^2/D^2) that lies
-// r^2/D nearer than its centre, across the line of sight to it.
+// r^2/D nearer than its centre, across the line of sight to it; from infinitely far away as the one
+// across the view.
 std::optional<PictureLine> sphere_outline(const Projection& view, const Vec3d& center,
                                           double radius) {
-    const Vec3d to_camera = view.camera().position - center;
-    const double away = length(to_camera);
-    if (away <= radius * 1.0001) return std::nullopt;
-    const double share = radius / away;
-    const Ring ring(center + (radius * share) * unit(to_camera), to_camera,
+    const Vec3d towards = view.towards_eye(center);
+    double share = 0;
+    if (!view.is_orthographic()) {
+        const double away = view.distance_to(center);
+        if (away <= radius * 1.0001) return std::nullopt;
+        share = radius / away;
+    }
+    const Ring ring(center + (radius * share) * towards, towards,
                     radius * std::sqrt(1 - share * share));
     PictureLine line;
     for (int step = 0; step < outline_steps; ++step) {
@@ -102,17 +104,22 @@ std::vector<PictureLine> disc_outline(const Projection& view, const Ring& rim, d
 
 // The outline of a tube around a curve: where its normal n, across the tangent, is also across the
 // line of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit
-// vectors across the tangent that fixes two, one for each edge.
+// vectors across the tangent that fixes two, one for each edge. From infinitely far away n . v = 0
+// for the view's direction v.
 std::vector<PictureLine> ring_outline(const Projection& view, const Ring& ring, double distance) {
     std::vector<PictureLine> edges(2);
     for (int step = 0; step < outline_steps; ++step) {
         const Vec3d place = at_step(ring, step, outline_steps);
         const Vec3d outward = ring.radius() > 0 ? unit(place - ring.center()) : ring.first_axis();
-        const Vec3d from_camera = place - view.camera().position;
+        const bool parallel = view.is_orthographic();
+        const Vec3d from_camera = parallel ? -view.back() : place - view.camera().position;
         const double u = dot(from_camera, outward), v = dot(from_camera, ring.normal());
         const double size = std::hypot(u, v);
-        if (size <= distance * 1.0001) return {};  // the line of sight runs along the tube
-        const double toward = std::atan2(v, u), half = std::acos(-distance / size);
+        // where the line of sight runs along the tube
+        constexpr double along = 1e-9;
+        if (parallel && size < along) continue;
+        if (!parallel && size <= distance * 1.0001) return {};
+        const double toward = std::atan2(v, u), half = std::acos(parallel ? 0 : -distance / size);
         for (std::size_t edge = 0; edge < 2; ++edge) {
             const double angle = edge == 0 ? toward + half : toward - half;
             const auto seen = view.project(

@@ -108,14 +108,13 @@ struct ShapeInHand<PolygonSkeleton> {
         Vec3d to = vertex;
         const auto seen = view.projection.project(vertex);
         if (!motion.axis && seen && (motion.dx != 0 || motion.dy != 0)) {
-            const Vec3d sight =
-                unit(view.projection.direction({seen->x + motion.dx, seen->y + motion.dy}));
-            const double towards = dot(sight, normal);
+            const Ray sight =
+                view.projection.line_of_sight({seen->x + motion.dx, seen->y + motion.dy});
+            const double towards = dot(sight.direction, normal);
             if (std::abs(towards) > least_slope) {
-                const Vec3d from_camera = vertex - view.projection.camera().position;
-                const double t = dot(from_camera, normal) / towards;
-                if (!(t > 0)) return false;
-                to = view.projection.camera().position + t * sight;
+                const double t = dot(vertex - sight.origin, normal) / towards;
+                if (!view.projection.is_orthographic() && !(t > 0)) return false;
+                to = sight.origin + t * sight.direction;
             } else if (!move_place(to, view, motion)) {
                 return false;
             }

@@ -18,7 +18,7 @@ bool same_elements(const Scene& a, const Scene& b) {
     for (std::size_t i = 0; i < a.elements.size(); ++i) {
         const Element &p = a.elements[i], &q = b.elements[i];
         if (!(p.skeleton == q.skeleton && p.kernel == q.kernel && p.strength == q.strength &&
-              p.width == q.width && p.visible == q.visible))
+              p.width == q.width && p.widths == q.widths && p.visible == q.visible))
             return false;
     }
     return true;

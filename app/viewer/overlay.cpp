@@ -14,6 +14,7 @@
 
 #include "app/shape/shapes.h"
 #include "core/kernel/kernels.h"
+#include "core/render/camera.h"
 #include "core/render/shade.h"
 #include "core/scene/text.h"
 
@@ -77,9 +78,12 @@ class Pen {
     [[nodiscard]] bool behind(const Vec3d& place) const {
         const auto seen = view_.project(place);
         if (!seen) return false;
-        const Vec3d line = place - view_.camera().position;
-        return std::hypot(line.x, line.y, line.z) >
-               1.0005 * static_cast<double>(state_.picture.depth_at(*seen));
+        // of the way; of what an orthographic camera sees, which may be far away, and of a float
+        const auto depth = static_cast<double>(state_.picture.depth_at(*seen));
+        const double slack = view_.is_orthographic()
+                                 ? 5e-4 * height_of(view_.camera()) + 0x1p-22 * depth
+                                 : 5e-4 * depth;
+        return view_.distance_to(place) > depth + slack;
     }
 
     void skeleton(const Element& element, bool selected) {

@@ -27,9 +27,9 @@ double distance_to_line(WindowPoint p, WindowPoint a, WindowPoint b) {
 
 std::optional<Picked> pick_surface(const Scene& scene, const Projection& view, WindowPoint at) {
     const WindowPoint middle{std::floor(at.x) + 0.5, std::floor(at.y) + 0.5};
-    const Ray ray{view.camera().position, view.direction(middle)};
+    const Ray ray = view.line_of_sight(middle);
     const Field field = compile(scene);
-    // far wider than the rounding of the direction, far narrower than a pixel
+    // far wider than the ray's rounding, far narrower than a pixel
     const ElementList list =
         reaching_elements(field, all_elements(field), {ray.origin, ray.direction, 1e-9});
     Counts counts;

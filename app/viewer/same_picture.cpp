@@ -7,7 +7,8 @@ namespace ivory {
 bool looks_the_same(const Element& a, const Element& b) {
     if (!a.visible && !b.visible) return true;
     return a.visible == b.visible && a.skeleton == b.skeleton && a.color == b.color &&
-           a.kernel == b.kernel && a.strength == b.strength && a.width == b.width;
+           a.kernel == b.kernel && a.strength == b.strength && a.width == b.width &&
+           a.widths == b.widths;
 }
 
 bool same_picture(const Scene& a, const Scene& b) {

@@ -66,6 +66,20 @@ bool is_moved(const Difference& changed) {
     return moved(changed.before, changed.after) || moved(changed.after, changed.before);
 }
 
+// A ball that is seen within `angle` of a unit direction from the eye.
+bool looks_at(const TileDirection& tile, const Vec3d& to_center, double angle) {
+    const double sum = angle + tile.angle + 1e-6;
+    return sum >= std::numbers::pi || dot(tile.axis, to_center) >= std::cos(sum);
+}
+
+// A ball, of a tile whose rays are parallel.
+bool meets(const TileDirection& tile, const Vec3d& eye_to_center, double radius) {
+    const Vec3d to_center = eye_to_center - tile.from_eye;
+    const double along = dot(to_center, tile.axis);
+    const double reach = (radius + tile.radius) * (1 + 1e-6);
+    return along > -reach && length(to_center - along * tile.axis) <= reach;
+}
+
 }  // namespace
 
 std::vector<TileDirection> tile_directions(const View& view, WindowSize size) {
@@ -73,8 +87,13 @@ std::vector<TileDirection> tile_directions(const View& view, WindowSize size) {
     std::vector<TileDirection> directions(grid.tiles.size());
     for (std::size_t tile = 0; tile < directions.size(); ++tile) {
         const Cone cone = cone_around(view, size.width, size.height, grid.tiles.rect(tile));
-        directions[tile] = {unit(cone.axis),
-                            cone.sine < 1 ? std::asin(cone.sine) : std::numbers::pi};
+        directions[tile].axis = unit(cone.axis);
+        if (view.is_orthographic()) {
+            directions[tile].from_eye = cone.apex - view.origin;
+            directions[tile].radius = cone.radius;
+        } else {
+            directions[tile].angle = cone.sine < 1 ? std::asin(cone.sine) : std::numbers::pi;
+        }
     }
     return directions;
 }
@@ -92,16 +111,16 @@ std::optional<std::vector<std::uint8_t>> touched_tiles(const Scene& before, cons
     for (const Element& element : changed.after) cover(element, after.threshold, balls);
 
     std::vector<std::uint8_t> touched(tiles.size(), 0);
+    const bool parallel = !tiles.empty() && tiles.front().radius > 0;
     for (const Ball& ball : balls) {
         const Vec3d to_center = ball.center - eye;
         const double distance = length(to_center);
-        if (!(distance > ball.radius)) return std::nullopt;  // the eye is in it
-        const double angle = std::asin(ball.radius / distance);
+        if (!parallel && !(distance > ball.radius)) return std::nullopt;  // the eye is in it
+        const double angle = parallel ? 0 : std::asin(ball.radius / distance);
         for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
             if (touched[tile] != 0) continue;
-            const double cosine = dot(tiles[tile].axis, to_center) / distance;
-            const double sum = angle + tiles[tile].angle + 1e-6;
-            touched[tile] = sum >= std::numbers::pi || cosine >= std::cos(sum);
+            touched[tile] = parallel ? meets(tiles[tile], to_center, ball.radius)
+                                     : looks_at(tiles[tile], (1 / distance) * to_center, angle);
         }
     }
     return touched;

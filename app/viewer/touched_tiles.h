@@ -13,10 +13,13 @@
 
 namespace ivory {
 
-// The bundle of rays of one tile: all within `angle` of `axis`.
+// The bundle of rays of one tile: all within `angle` of `axis`. Of an orthographic picture they begin
+// within `radius` > 0 of eye + from_eye instead, side by side.
 struct TileDirection {
     Vec3d axis;  // unit length
-    double angle;
+    double angle = 0;
+    Vec3d from_eye{};
+    double radius = 0;
 };
 
 [[nodiscard]] std::vector<TileDirection> tile_directions(const View& view, WindowSize size);
@@ -28,7 +31,7 @@ struct TileDirection {
 // Reach: where |F| > 1e-6 T. It is a matter of sight, not of proof: the session traces the other
 // tiles too before it calls a picture final.
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> touched_tiles(
-    const Scene& before, const Scene& after, const Vec3d& eye,
+    const Scene& before, const Scene& after, const Vec3d& eye,  // the camera's position
     const std::vector<TileDirection>& tiles);
 
 }  // namespace ivory

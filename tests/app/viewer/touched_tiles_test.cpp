@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
+#include "app/document/orbit.h"
 #include "app/viewer/same_picture.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
@@ -41,9 +43,9 @@ Scene three_elements() {
     return scene;
 }
 
-std::vector<Rgba8> rendered(const Scene& scene) {
+std::vector<Rgba8> rendered(const Scene& scene, const Camera& camera) {
     Scene seen = scene;
-    seen.camera = camera();
+    seen.camera = camera;
     const Picture picture =
         make_picture(seen, size.width, size.height, *methods().front(), {.tolerance = 1e-6});
     Canvas canvas(size.width, size.height, false);
@@ -112,6 +114,7 @@ TEST(SamePicture, OnlyWhatIsSeenInOrderCounts) {
     EXPECT_FALSE(with([](Scene& s) { s.elements[1].visible = false; }));
     EXPECT_FALSE(with([](Scene& s) { s.elements[1].color.x = 0.125; }));
     EXPECT_FALSE(with([](Scene& s) { s.elements[1].strength = 2; }));
+    EXPECT_FALSE(with([](Scene& s) { s.elements[1].widths = {0.4, 0.7}; }));
     EXPECT_FALSE(with([](Scene& s) { s.elements.pop_back(); }));
     EXPECT_FALSE(with([](Scene& s) { std::swap(s.elements[0], s.elements[1]); }));
 }
@@ -138,14 +141,24 @@ TEST(TouchedTiles, AHiddenElementTouchesNone) {
 
 // Whatever is moved, added, taken away or changed: no pixel of another tile changes by more than
 // 1/255.
-TEST(TouchedTiles, NothingElseChangesVisibly) {
+class NothingElse : public testing::TestWithParam<Camera::Projection> {};
+INSTANTIATE_TEST_SUITE_P(, NothingElse,
+                         testing::Values(Camera::Projection::perspective,
+                                         Camera::Projection::orthographic),
+                         [](const auto& test) {
+                             return std::string(
+                                 projection_words[static_cast<std::size_t>(test.param)]);
+                         });
+
+TEST_P(NothingElse, ChangesVisibly) {
+    const Camera camera = in_projection(ivory::camera(), GetParam());
     constexpr unsigned seed = 20240611;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> shift(-0.6, 0.6);
     const TileGrid grid(size.width, size.height);
-    const auto directions = tile_directions(make_view(camera()), size);
+    const auto directions = tile_directions(make_view(camera), size);
     Scene before = three_elements();
-    std::vector<Rgba8> old_picture = rendered(before);
+    std::vector<Rgba8> old_picture = rendered(before, camera);
     std::size_t left_alone = 0;
     for (int i = 0; i < 12; ++i) {
         Scene after = before;
@@ -166,10 +179,10 @@ TEST(TouchedTiles, NothingElseChangesVisibly) {
                 if (i % 8 == 3) std::swap(before, after);  // taken away
                 break;
         }
-        if (i % 8 == 3) old_picture = rendered(before);
-        const auto touched = touched_tiles(before, after, camera().position, directions);
+        if (i % 8 == 3) old_picture = rendered(before, camera);
+        const auto touched = touched_tiles(before, after, camera.position, directions);
         ASSERT_TRUE(touched.has_value());
-        const std::vector<Rgba8> picture = rendered(after);
+        const std::vector<Rgba8> picture = rendered(after, camera);
         for (std::size_t tile = 0; tile < touched->size(); ++tile) {
             if ((*touched)[tile] != 0) continue;
             ++left_alone;
@@ -184,7 +197,7 @@ TEST(TouchedTiles, NothingElseChangesVisibly) {
             }
         }
         before = i % 8 == 7 ? before : after;
-        old_picture = rendered(before);
+        old_picture = rendered(before, camera);
     }
     EXPECT_GT(left_alone, 12u * grid.tiles.size() / 4);
 }
