@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/panels/camera_moves.h"
 #include "app/panels/files.h"
 #include "app/panels/names.h"
 #include "app/panels/panels.h"
+#include "app/panels/saved_views.h"
 #include "app/panels/scene_edits.h"
 #include "app/shape/shapes.h"
 #include "core/field/field.h"
@@ -21,6 +23,7 @@ namespace {
 
 constexpr Modifiers plain{};
 constexpr Modifiers ctrl{.control = true};
+constexpr Modifiers alt{.alt = true};
 constexpr Modifiers ctrl_shift{.shift = true, .control = true};
 
 constexpr std::array actions = {
@@ -47,17 +50,21 @@ constexpr std::array actions = {
     ActionInfo{Action::right, "view.right", "Right", "3", {Key::digit3, plain}},
     ActionInfo{Action::left, "view.left", "Left", "Ctrl+3", {Key::digit3, ctrl}},
     ActionInfo{Action::top, "view.top", "Top", "7", {Key::digit7, plain}},
-    ActionInfo{Action::bottom, "view.bottom", "Bottom", "Ctrl+7", {Key::digit7, ctrl}, true},
+    ActionInfo{Action::bottom, "view.bottom", "Bottom", "Ctrl+7", {Key::digit7, ctrl}},
+    ActionInfo{
+        Action::orthographic, "view.orthographic", "Orthographic", "5", {Key::digit5, plain}, true},
+    ActionInfo{Action::undo_move, "view.undo", "Undo move", "Alt+Left", {Key::left, alt}},
+    ActionInfo{Action::redo_move, "view.redo", "Redo move", "Alt+Right", {Key::right, alt}},
+    ActionInfo{
+        Action::copy_camera, "view.copy", "Copy camera", "Ctrl+Shift+C", {Key::c, ctrl_shift}},
+    ActionInfo{
+        Action::paste_camera, "view.paste", "Paste camera", "Ctrl+Shift+V", {Key::v, ctrl_shift}},
+    ActionInfo{Action::keep_view, "view.keep", "Keep this view", "", {}, true},
     ActionInfo{Action::skeleton, "view.skeleton", "Skeleton", "S", {Key::s, plain}},
     ActionInfo{Action::panels, "view.panels", "Panels", "Tab", {Key::tab, plain}},
     ActionInfo{Action::theme, "view.theme", "Light theme", "", {}},
     ActionInfo{Action::help, "help.keys", "Mouse and keys", "?", {}},
 };
-
-void set_camera(ViewerState& state, const Camera& camera) {
-    state.view.camera = camera;
-    state.view.automatic = false;
-}
 
 // The surface, or, where it is empty, the elements that could make one.
 void frame_all(ViewerState& state) {
@@ -67,7 +74,7 @@ void frame_all(ViewerState& state) {
     try {
         const Framing framing = frame_surface(compile(scene), view.camera(), aspect);
         if (!framing.empty || scene.elements.empty()) {
-            set_camera(state, framing.camera);
+            move_camera(state, framing.camera);
             return;
         }
     } catch (const Error& error) {
@@ -76,7 +83,7 @@ void frame_all(ViewerState& state) {
     }
     Box3 box;
     for (const Element& element : scene.elements) box.include(box_around(element));
-    set_camera(state, framed(view, box));
+    move_camera(state, framed(view, box));
 }
 
 void remove_selected(ViewerState& state) {
@@ -99,7 +106,7 @@ void duplicate_selected(ViewerState& state) {
 
 void focus_selected(ViewerState& state) {
     const Element& element = state.document.scene().elements[*state.document.selected()];
-    set_camera(state, framed(state.projection(), box_around(element)));
+    move_camera(state, framed(state.projection(), box_around(element)));
 }
 
 }  // namespace
@@ -117,6 +124,10 @@ bool is_possible(const ViewerState& state, Action action) {
             return !state.document.undo_name().empty();
         case Action::redo:
             return !state.document.redo_name().empty();
+        case Action::undo_move:
+            return state.view.can_undo();
+        case Action::redo_move:
+            return state.view.can_redo();
         case Action::remove:
         case Action::duplicate:
         case Action::hide:
@@ -129,6 +140,8 @@ bool is_possible(const ViewerState& state, Action action) {
 
 bool is_on(const ViewerState& state, Action action) {
     switch (action) {
+        case Action::orthographic:
+            return state.projection().is_orthographic();
         case Action::skeleton:
             return state.skeleton_shown;
         case Action::theme:
@@ -149,6 +162,8 @@ std::string label_of(const ViewerState& state, Action action) {
     };
     if (action == Action::undo) return about(state.document.undo_name());
     if (action == Action::redo) return about(state.document.redo_name());
+    const bool view_alone = !state.document.dirty() && !state.view.is_saved();
+    if (action == Action::save && state.document.path() && view_alone) return "Save this view";
     const auto selected = state.document.selected();
     if (action == Action::hide && selected && !state.document.scene().elements[*selected].visible)
         return "Show";
@@ -158,7 +173,7 @@ std::string label_of(const ViewerState& state, Action action) {
 void run(ViewerState& state, Action action) {
     if (!is_possible(state, action)) return;
     const auto look_along = [&](int axis, bool opposite) {
-        set_camera(state, along_axis(state.projection(), axis, opposite));
+        move_camera(state, along_axis(state.projection(), axis, opposite));
     };
     switch (action) {
         case Action::start_anew:
@@ -219,6 +234,26 @@ void run(ViewerState& state, Action action) {
             return;
         case Action::bottom:
             look_along(1, true);
+            return;
+        case Action::orthographic:
+            set_projection(state, state.projection().is_orthographic()
+                                      ? Camera::Projection::perspective
+                                      : Camera::Projection::orthographic);
+            return;
+        case Action::undo_move:
+            state.view.undo();
+            return;
+        case Action::redo_move:
+            state.view.redo();
+            return;
+        case Action::copy_camera:
+            copy_camera(state);
+            return;
+        case Action::paste_camera:
+            paste_camera(state);
+            return;
+        case Action::keep_view:
+            keep_view(state);
             return;
         case Action::skeleton:
             state.skeleton_shown = !state.skeleton_shown;

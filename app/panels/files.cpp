@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/panels/camera_moves.h"
 #include "app/panels/panels.h"
 #include "core/field/field.h"
 #include "core/render/camera.h"
@@ -17,14 +18,16 @@ namespace ivory {
 
 namespace {
 
-void take_document(ViewerState& state, Document document, const Camera& camera, bool automatic) {
+void take_document(ViewerState& state, Document document, const DocumentView& view) {
     state.document = std::move(document);
-    state.view = {camera, automatic};
+    state.view = view;
     state.panels.number.reset();
     state.panels.text = {};
     state.panels.dragged = {};
     state.panels.row_shown.reset();
     state.panels.ranged.reset();
+    state.panels.boxed.reset();
+    state.panels.view.reset();
     // neither goes on about another document
     state.panels.file_question.reset();
     state.panels.browser.mode = FileBrowser::Mode::closed;
@@ -55,6 +58,7 @@ void ask(ViewerState& state, FileQuestion question) {
 void saved(ViewerState& state, const std::filesystem::path& path, std::string_view bytes,
            const std::optional<Pending>& after) {
     state.document.mark_saved(path, bytes);
+    state.view.mark_saved();
     state.say("Saved " + shown_name(path));
     if (after) perform(state, *after);
 }
@@ -71,21 +75,25 @@ void open_scene(ViewerState& state, const std::filesystem::path& path) {
     Document document = Document::open(path, state.stop);
     const WindowSize size = state.viewport.width > 0 ? state.viewport.size() : WindowSize{16, 9};
     const Scene& scene = document.scene();
-    const Camera camera = [&] {
+    const DocumentView view = [&] {
         try {
-            return camera_of(scene, compile(scene), size.width, size.height);
+            const Field field = compile(scene);
+            const Camera camera = camera_of(scene, field, size.width, size.height);
+            const bool section = camera.projection == Camera::Projection::orthographic &&
+                                 !plane_is_before(camera, field.box);
+            return DocumentView(camera, scene.camera, section);
         } catch (const Error& fault) {
             throw camera_fault(scene, path, fault);
         }
     }();
-    const bool automatic = !scene.camera;
-    take_document(state, std::move(document), camera, automatic);
+    take_document(state, std::move(document), view);
 }
 
 void save_scene(ViewerState& state, const std::filesystem::path& path) {
     const std::string bytes = scene_bytes(state);
     write_file(path, bytes);
     state.document.mark_saved(path, bytes);
+    state.view.mark_saved();
 }
 
 void request_open(ViewerState& state, const std::filesystem::path& path) {
@@ -110,7 +118,8 @@ void perform(ViewerState& state, const Pending& pending) {
                 open_scene(state, pending.path);
                 break;
             case Pending::Kind::start_anew:
-                take_document(state, Document(), default_camera(compile({}), 16.0 / 9), true);
+                take_document(state, Document(),
+                              {default_camera(compile({}), 16.0 / 9), std::nullopt});
                 break;
             case Pending::Kind::quit:
                 state.quit = true;
@@ -172,8 +181,10 @@ void reload(ViewerState& state) {
         state.say_error(error.what());
         return;
     }
-    if (const std::optional<Camera>& camera = state.document.scene().camera)
-        state.view = {*camera, false};
+    if (const std::optional<Camera>& camera = state.document.scene().camera) {
+        set_camera(state, *camera);
+        state.view.mark_saved();
+    }
     state.say("Reloaded " + shown_name(*state.document.path()) +
               (differs ? "; Ctrl+Z brings back what was here" : ""));
 }

@@ -35,6 +35,9 @@ constexpr std::array looking = {
     Binding{"F", "focus the selected element"},
     Binding{"1 / 3 / 7", "front, right, top"},
     Binding{"Ctrl+1 / 3 / 7", "back, left, bottom"},
+    Binding{"5", "orthographic or perspective"},
+    Binding{"Alt+Left / Alt+Right", "undo, redo a move of the camera"},
+    Binding{"Ctrl+Shift+C / V", "copy, paste the camera"},
 };
 constexpr std::array handles = {
     Binding{"Click", "select"},

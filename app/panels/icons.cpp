@@ -161,6 +161,22 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 middle, float side, ImU32 col
                 }
             s.disc(0, 0, 0.26f);
             return;
+        case Icon::orthographic:
+            // a box whose edges do not converge
+            s.rect(-0.85f, -0.3f, 0.3f, 0.85f);
+            s.line(-0.85f, -0.3f, -0.3f, -0.85f);
+            s.line(0.3f, -0.3f, 0.85f, -0.85f);
+            s.line(0.3f, 0.85f, 0.85f, 0.3f);
+            s.line(-0.3f, -0.85f, 0.85f, -0.85f);
+            s.line(0.85f, -0.85f, 0.85f, 0.3f);
+            return;
+        case Icon::paste:
+            s.rect(-0.65f, -0.6f, 0.65f, 0.85f);
+            s.line(-0.3f, -0.85f, 0.3f, -0.85f);
+            s.line(-0.3f, -0.85f, -0.3f, -0.35f);
+            s.line(0.3f, -0.85f, 0.3f, -0.35f);
+            s.line(-0.3f, -0.35f, 0.3f, -0.35f);
+            return;
         case Icon::skeleton:
             s.line(-0.6f, 0.35f, 0, -0.5f);
             s.line(0, -0.5f, 0.65f, 0.4f);

@@ -19,6 +19,8 @@ enum class Icon : std::uint8_t {
     undo,
     redo,
     frame,
+    orthographic,
+    paste,
     skeleton,
     theme,
     cross,

@@ -12,6 +12,7 @@
 #include "app/document/elements.h"
 #include "app/panels/actions.h"
 #include "app/panels/buttons.h"
+#include "app/panels/choice_field.h"
 #include "app/panels/color_field.h"
 #include "app/panels/layout.h"
 #include "app/panels/names.h"
@@ -29,14 +30,6 @@
 namespace ivory {
 
 namespace {
-
-// One pixel of a field's drag is about one pixel of the picture.
-double step_in_scene(const ViewerState& state) {
-    const double length =
-        state.projection().length_of_pixel(state.view.camera.target) * state.scale;
-    const double exponent = std::round(std::log10(length));
-    return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
-}
 
 // What would leave a skeleton that no file could hold is refused, and changes nothing.
 template <class Change>
@@ -144,78 +137,17 @@ void draw_skeleton(ViewerState& state, std::size_t element, const std::string& n
     });
 }
 
-// One of a few words, all of them in sight.
 void draw_kernel(ViewerState& state, std::size_t element, const std::string& name) {
-    struct Choice {
-        KernelKind kind;
-        const char* label;
-    };
-    constexpr auto choices = []<class... K>(TypeList<K...>) {
-        return std::array{Choice{kind_of<K>, K::label.data()}...};
+    const auto choices = []<class... K>(TypeList<K...>) {
+        return std::array{Choice{kernel_word(kind_of<K>), K::label.data()}...};
     }(Kernels{});
-    const Palette& colors = palette(state.theme);
     label(state, "Kernel");
     const KernelKind now = state.document.scene().elements[element].kernel;
-    const float width = field_width();
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float height = ImGui::GetFrameHeight();
-    // as many in a row as there is room for
-    const auto texts_from = [&](std::size_t first, std::size_t end) {
-        float texts = 0;
-        for (std::size_t i = first; i < end; ++i) texts += ImGui::CalcTextSize(choices[i].label).x;
-        return texts;
-    };
-    const auto row_end = [&](std::size_t first, std::size_t columns) {
-        return std::min(first + columns, choices.size());
-    };
-    std::size_t columns = choices.size();
-    const auto fits = [&] {
-        for (std::size_t first = 0; first < choices.size(); first += columns) {
-            const std::size_t end = row_end(first, columns);
-            const auto count = static_cast<float>(end - first);
-            if (texts_from(first, end) + 2 * px(state, 4) * count > width) return false;
-        }
-        return true;
-    };
-    while (columns > 1 && !fits()) --columns;
-    const std::size_t rows = (choices.size() + columns - 1) / columns;
-    const float all_rows = static_cast<float>(rows) * height;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float rounding = ImGui::GetStyle().FrameRounding;
-    list.AddRectFilled(at, {at.x + width, at.y + all_rows}, packed(colors.field), rounding);
-
-    float pad = 0;
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-        const Choice& choice = choices[i];
-        if (i % columns == 0) {
-            const std::size_t end = row_end(i, columns);
-            pad = (width - texts_from(i, end)) / (2 * static_cast<float>(end - i));
-            ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>(i / columns) * height});
-        }
-        const ImVec2 text = ImGui::CalcTextSize(choice.label);
-        ImGui::PushID(choice.label);
-        const bool clicked = ImGui::InvisibleButton("##kernel", {text.x + 2 * pad, height});
-        const std::string word = kernel_word(choice.kind);
-        state.widgets.add("element.kernel." + word, WidgetKind::button);
-        const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
-        const bool on = choice.kind == now;
-        if (on) {
-            list.AddRectFilled(lo, hi, packed(colors.accent), rounding);
-        } else if (ImGui::IsItemHovered()) {
-            list.AddRectFilled(lo, hi, packed(colors.field_hovered), rounding);
-        }
-        list.AddText({std::floor(lo.x + pad), std::floor(0.5f * (lo.y + hi.y - text.y))},
-                     packed(on ? colors.accent_text : colors.text), choice.label);
-        ImGui::PopID();
-        ImGui::SameLine(0, 0);
-        if (clicked)
-            edit_scene(state, "Change kernel of " + name,
-                       [&](Scene& scene) { scene.elements[element].kernel = choice.kind; });
-    }
-    const auto whole = [](float x) { return static_cast<int>(std::floor(x)); };
-    state.widgets.add("element.kernel", WidgetKind::choice,
-                      {whole(at.x), whole(at.y), whole(width), whole(all_rows)});
-    ImGui::NewLine();
+    if (const auto clicked =
+            choice_field(state, "element.kernel", choices, static_cast<std::size_t>(now)))
+        edit_scene(state, "Change kernel of " + name, [&](Scene& scene) {
+            scene.elements[element].kernel = static_cast<KernelKind>(*clicked);
+        });
 }
 
 // One for all of it, or one for each end or point; what can taper has a switch beside it.
@@ -326,6 +258,8 @@ void draw_inspector_panel(ViewerState& state, const WindowRect& rect) {
     draw_inspector(state);
     draw_surface(state);
     draw_lights(state);
+    draw_camera(state);
+    draw_views(state);
     ImGui::End();
 }
 

@@ -33,7 +33,9 @@ void press(ViewerState& state, const KeyPress& press) {
     }
     // held down, only a step back or forth goes on
     for (const ActionInfo& action : all_actions()) {
-        const bool repeats = action.action == Action::undo || action.action == Action::redo;
+        const bool repeats = action.action == Action::undo || action.action == Action::redo ||
+                             action.action == Action::undo_move ||
+                             action.action == Action::redo_move;
         if (same(action.shortcut, press) && (repeats || !press.repeated)) run(state, action.action);
     }
 }
@@ -43,7 +45,7 @@ void press(ViewerState& state, const KeyPress& press) {
 void handle_keys(ViewerState& state, const Input& input) {
     // keys belong to a drag, a text field or a dialog first
     if (state.document.dragging() || ImGui::GetIO().WantTextInput || state.panels.number) return;
-    if (state.panels.dialog_open()) return;
+    if (state.panels.dialog_open() || state.panels.dragged.begun) return;
     // A menu or a colour picker has the plain keys, Escape among them: one can undo and save with it open.
     const bool popup =
         ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <utility>
+#include <variant>
 
 #include "app/document/tidy.h"
 #include "app/panels/layout.h"
@@ -45,8 +46,7 @@ void open_typing(ViewerState& state, const NumberField& field) {
     state.panels.number = TypedNumber{field.id, text, text};
 }
 
-void take_typed(ViewerState& state, const NumberField& field,
-                const std::function<void(Scene&, double)>& set) {
+void take_typed(ViewerState& state, const NumberField& field, const SetNumber& set) {
     const TypedNumber typed = *std::exchange(state.panels.number, std::nullopt);
     if (typed.text == typed.before) return;
     const auto value = parse_number(typed.text, field.value);
@@ -56,11 +56,14 @@ void take_typed(ViewerState& state, const NumberField& field,
         return;
     }
     if (*value == field.value) return;  // in other words
-    edit_scene(state, field.what, [&](Scene& scene) { set(scene, *value); });
+    if (const auto* const in_scene = std::get_if<SetInScene<double>>(&set))
+        edit_scene(state, field.what, [&](Scene& scene) { (*in_scene)(scene, *value); });
+    else
+        edit_camera(state,
+                    [&](Camera& camera) { std::get<SetInCamera<double>>(set)(camera, *value); });
 }
 
-void typed_number(ViewerState& state, const NumberField& field, float width,
-                  const std::function<void(Scene&, double)>& set) {
+void typed_number(ViewerState& state, const NumberField& field, float width, const SetNumber& set) {
     TypedNumber& typed = *state.panels.number;
     typed.drawn = true;
     if (!typed.focused) ImGui::SetKeyboardFocusHere();
@@ -80,16 +83,31 @@ void typed_number(ViewerState& state, const NumberField& field, float width,
 
 // --- it can be dragged ---
 
+void begin_drag(ViewerState& state, const NumberField& field, const SetNumber& set) {
+    if (std::holds_alternative<SetInScene<double>>(set))
+        begin_field_drag(state, field.id, field.what);
+    else
+        begin_camera_field_drag(state, field.id);
+}
+
+void drag_to(ViewerState& state, const SetNumber& set, double value) {
+    if (const auto* const in_scene = std::get_if<SetInScene<double>>(&set))
+        drag_field(state, [&](Scene& scene) { (*in_scene)(scene, value); });
+    else
+        drag_camera_field(
+            state, [&](Camera& camera) { std::get<SetInCamera<double>>(set)(camera, value); });
+}
+
 // From a press to its release: a drag, or a click that opens the field.
-void follow_drag(ViewerState& state, const NumberField& field,
-                 const std::function<void(Scene&, double)>& set, bool hovered, bool active) {
+void follow_drag(ViewerState& state, const NumberField& field, const SetNumber& set, bool hovered,
+                 bool active) {
     DraggedField& drag = state.panels.dragged;
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActivated()) drag = {field.id, field.value, 0, io.MousePos.x, false, false};
     if (active && drag.id == field.id && !drag.cancelled) {
         const auto slack = static_cast<float>(drag_slack * state.scale);
         if (!drag.begun && ImGui::IsMouseDragging(ImGuiMouseButton_Left, slack)) {
-            begin_field_drag(state, field.id, field.what);
+            begin_drag(state, field, set);
             drag.start = field.value;  // an undo since the press has changed it
         }
         if (drag.begun && io.MousePos.x != drag.last_x) {
@@ -98,7 +116,7 @@ void follow_drag(ViewerState& state, const NumberField& field,
             const double value = tidy(drag.start + drag.way / state.scale * field.step,
                                       exponent_above(step * 0.999));
             const double within = std::clamp(value, field.least, field.greatest);
-            drag_field(state, [&](Scene& scene) { set(scene, within); });
+            drag_to(state, set, within);
         }
         drag.last_x = io.MousePos.x;
     }
@@ -137,7 +155,7 @@ void draw_number(const ViewerState& state, const NumberField& field, float width
 }
 
 void dragged_number(ViewerState& state, const NumberField& field, float width,
-                    const std::function<void(Scene&, double)>& set) {
+                    const SetNumber& set) {
     ImGui::InvisibleButton("##number", {width, ImGui::GetFrameHeight()});
     state.widgets.add(field.id, WidgetKind::number);
     const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
@@ -148,8 +166,14 @@ void dragged_number(ViewerState& state, const NumberField& field, float width,
 
 }  // namespace
 
-void number_field(ViewerState& state, const NumberField& field, float width,
-                  const std::function<void(Scene&, double)>& set) {
+double step_in_scene(const ViewerState& state) {
+    const double length =
+        state.projection().length_of_pixel(state.view.camera.target) * state.scale;
+    const double exponent = std::round(std::log10(length));
+    return std::isfinite(exponent) ? std::pow(10.0, exponent) : 0.01;
+}
+
+void number_field(ViewerState& state, const NumberField& field, float width, const SetNumber& set) {
     PanelMemory& memory = state.panels;
     ImGui::PushID(field.id.c_str());
     const bool enabled = !item_is_disabled();
@@ -173,8 +197,7 @@ void number_field(ViewerState& state, const NumberField& field, float width,
 }
 
 void vector_fields(ViewerState& state, const std::string& id, const std::string& what,
-                   const Vec3d& value, double step,
-                   const std::function<void(Scene&, const Vec3d&)>& set) {
+                   const Vec3d& value, double step, const SetVector& set) {
     const float spacing = px(state, 4);
     const float third = std::floor((field_width() - 2 * spacing) / 3);
     // far from the origin a third of the line has no room for what a drag changes
@@ -193,11 +216,18 @@ void vector_fields(ViewerState& state, const std::string& id, const std::string&
         const float width = axis < 2 && one_line ? third : field_width();
         const NumberField field{
             .id = id + "." + "xyz"[k], .what = what, .value = value[k], .step = step, .axis = axis};
-        number_field(state, field, width, [&](Scene& scene, double number) {
+        const auto with = [&](double number) {
             Vec3d changed = value;
             changed[k] = number;
-            set(scene, changed);
-        });
+            return changed;
+        };
+        if (const auto* const in_scene = std::get_if<SetInScene<Vec3d>>(&set))
+            number_field(state, field, width,
+                         [&](Scene& scene, double number) { (*in_scene)(scene, with(number)); });
+        else
+            number_field(state, field, width, [&](Camera& camera, double number) {
+                std::get<SetInCamera<Vec3d>>(set)(camera, with(number));
+            });
     }
 }
 

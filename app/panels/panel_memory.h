@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/document/file_stamp.h"
+#include "core/math/box3.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
@@ -33,6 +34,7 @@ struct DraggedField {
     double way = 0;    // pixels, fewer with Shift
     float last_x = 0;  // of the pointer
     bool begun = false, cancelled = false;
+    bool of_camera = false;
 };
 
 struct TypedText {
@@ -86,6 +88,9 @@ struct PanelMemory {
     TypedText text;
     bool name_wanted = false;  // the name of the selected element is to be typed
 
+    std::optional<std::string> view;  // the name of the saved view that was chosen last
+    bool view_name_wanted = false;    // is to be typed
+
     std::optional<Pending> question;
     std::optional<FileQuestion> file_question;
     // Of the question that is shown: one at a time.
@@ -101,10 +106,11 @@ struct PanelMemory {
     std::optional<std::size_t> row_shown;  // the selection that the list last scrolled to
 
     // Derived from a scene, kept until there is another one.
-    std::shared_ptr<const Scene> named, ranged;
+    std::shared_ptr<const Scene> named, ranged, boxed;
     std::vector<std::string> names;                            // element_names of `named`
     std::unordered_map<std::string_view, std::size_t> places;  // of `names`; empty: not asked for
     ThresholdRange thresholds;                                 // of `ranged`: the slider's ends
+    Box3 surface_box;                                          // of `boxed`; holds its surface
 };
 
 }  // namespace ivory

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/panels/camera_moves.h"
 #include "app/panels/files.h"
 #include "app/panels/parts.h"
 #include "app/panels/scene_edits.h"
@@ -97,6 +98,7 @@ void draw_panels(ViewerState& state) {
     draw_help(state);
     draw_dialogs(state);
     end_lost_edits(state);
+    keep_plane_before_surface(state);
 }
 
 double next_frame_wanted(const ViewerState& state) {

@@ -14,7 +14,7 @@ namespace ivory {
 void draw_top_bar(ViewerState& state);
 // The list of the elements, and what adds, copies, deletes and reorders them.
 void draw_scene_panel(ViewerState& state, const WindowRect& rect);
-// The selected element, then the surface and its lights.
+// The selected element, the surface and its lights, the camera and the views that are kept.
 void draw_inspector_panel(ViewerState& state, const WindowRect& rect);
 // State of the picture, or the message.
 void draw_status_bar(ViewerState& state, const WindowRect& rect);
@@ -27,6 +27,8 @@ void draw_help(ViewerState& state);
 void draw_inspector(ViewerState& state);
 void draw_surface(ViewerState& state);
 void draw_lights(ViewerState& state);
+void draw_camera(ViewerState& state);
+void draw_views(ViewerState& state);
 
 // A fixed window without any decoration; ImGui::End follows in any case.
 void begin_panel(const char* name, const WindowRect& rect, int more_flags = 0);

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "app/panels/camera_moves.h"
+#include "core/render/camera.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_fault.h"
 
@@ -22,6 +24,22 @@ bool has_fault(const Scene& scene, std::optional<std::size_t> selected) {
     return scene.lights &&
            std::any_of(scene.lights->begin(), scene.lights->end(),
                        [](const Light& light) { return find_fault(light).has_value(); });
+}
+
+// Of an orthographic camera without a height it is written out first: what follows from its place
+// would change with that.
+Camera changed_camera(const ViewerState& state, const std::function<void(Camera&)>& change) {
+    Camera camera = state.view.camera;
+    if (camera.projection == Camera::Projection::orthographic) camera.height = height_of(camera);
+    change(camera);
+    return camera;
+}
+
+void begin(DraggedField& drag, const std::string& id, bool of_camera) {
+    drag.id = id;
+    drag.begun = true;
+    drag.cancelled = false;
+    drag.of_camera = of_camera;
 }
 
 }  // namespace
@@ -43,11 +61,30 @@ void edit_scene(ViewerState& state, const std::string& what,
     state.document.edit(what, std::move(scene));
 }
 
+void edit_camera(ViewerState& state, const std::function<void(Camera&)>& change) {
+    const Camera camera = changed_camera(state, change);
+    if (const auto fault = find_fault(camera)) {
+        state.say_error(fault->message);
+        return;
+    }
+    if (state.message.error) state.message = {};
+    set_camera(state, camera);
+}
+
 void begin_field_drag(ViewerState& state, const std::string& id, const std::string& what) {
-    state.panels.dragged.id = id;
-    state.panels.dragged.begun = true;
-    state.panels.dragged.cancelled = false;
+    begin(state.panels.dragged, id, false);
     state.document.begin_drag(what);
+}
+
+void begin_camera_field_drag(ViewerState& state, const std::string& id) {
+    begin(state.panels.dragged, id, true);
+    state.view.end_move();
+}
+
+void drag_camera_field(ViewerState& state, const std::function<void(Camera&)>& change) {
+    if (!state.panels.dragged.begun || state.panels.dragged.cancelled) return;
+    const Camera camera = changed_camera(state, change);
+    if (!find_fault(camera)) drag_camera_as_written(state, camera);
 }
 
 void drag_field(ViewerState& state, const std::function<void(Scene&)>& change) {
@@ -60,13 +97,19 @@ void drag_field(ViewerState& state, const std::function<void(Scene&)>& change) {
 void end_field_drag(ViewerState& state) {
     if (!state.panels.dragged.begun) return;
     state.panels.dragged.begun = false;
-    state.document.end_drag();
+    if (state.panels.dragged.of_camera)
+        state.view.end_move();
+    else
+        state.document.end_drag();
 }
 
 void end_lost_edits(ViewerState& state) {
     DraggedField& drag = state.panels.dragged;
     if (drag.begun && plain_key_pressed(ImGuiKey_Escape)) {
-        state.document.cancel_drag();
+        if (drag.of_camera)
+            state.view.cancel_move();
+        else
+            state.document.cancel_drag();
         drag.begun = false;
         drag.cancelled = true;
     }

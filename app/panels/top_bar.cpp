@@ -17,7 +17,8 @@ namespace {
 void menu_entry(ViewerState& state, const ActionInfo& action) {
     const std::string label = label_of(state, action.action) + "      ###" + action.id;
     const bool on = is_on(state, action.action);
-    const bool switches = action.action == Action::skeleton || action.action == Action::theme ||
+    const bool switches = action.action == Action::orthographic ||
+                          action.action == Action::skeleton || action.action == Action::theme ||
                           action.action == Action::panels || action.action == Action::help;
     const bool possible = is_possible(state, action.action);
     ImGui::BeginDisabled(!possible);
@@ -85,6 +86,7 @@ void draw_tools(ViewerState& state, float y) {
     view_tool(state, "toolbar.front", "Front", Action::front);
     view_tool(state, "toolbar.right", "Right", Action::right);
     view_tool(state, "toolbar.top", "Top", Action::top);
+    tool(state, "toolbar.orthographic", Icon::orthographic, Action::orthographic);
     divider(state, y);
     tool(state, "toolbar.skeleton", Icon::skeleton, Action::skeleton);
     tool(state, "toolbar.theme", Icon::theme, Action::theme);
@@ -94,17 +96,25 @@ void draw_file_name(const ViewerState& state) {
     const auto& path = state.document.path();
     const Palette& colors = palette(state.theme);
     const std::string name = path ? printable(path->filename().string(), 60) : "untitled";
-    const float dot = state.document.dirty() ? px(state, 14) : 0;
+    // a dot for changes that are not saved, a ring for the view alone
+    const bool dirty = state.document.dirty(), unsaved_view = path && !state.view.is_saved();
+    const float dot = dirty || unsaved_view ? px(state, 14) : 0;
     const float width = ImGui::CalcTextSize(name.c_str()).x + dot;
     const float x = ImGui::GetWindowWidth() - px(state, 14) - width;
     if (x < ImGui::GetCursorPosX()) return;
     ImGui::SetCursorPos({std::floor(x + dot), 0});
-    if (dot > 0)
-        ImGui::GetWindowDrawList()->AddCircleFilled(
-            {std::floor(x) + px(state, 4), 0.5f * static_cast<float>(top_bar_height(state))},
-            px(state, 3.5), packed(colors.accent));
+    const ImVec2 middle{std::floor(x) + px(state, 4),
+                        0.5f * static_cast<float>(top_bar_height(state))};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (dirty)
+        list.AddCircleFilled(middle, px(state, 3.5), packed(colors.accent));
+    else if (unsaved_view)
+        list.AddCircle(middle, px(state, 3.2), packed(colors.accent), 0, px(state, 1.3));
     ImGui::TextUnformatted(name.c_str());
-    if (ImGui::IsItemHovered() && path) tooltip(printable(path->string(), 400).c_str());
+    if (!path) return;
+    const std::string whole = printable(path->string(), 400);
+    tooltip(
+        (unsaved_view ? whole + "\nThe view is not saved; Ctrl+S saves it too." : whole).c_str());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/document/document.h"
+#include "app/document/document_view.h"
 #include "app/document/orbit.h"
 #include "app/panels/panel_memory.h"
 #include "app/panels/picture_state.h"
@@ -23,14 +24,6 @@ struct Message {
     std::string text;  // one line; empty: none
     bool error = false;
     double seconds_left = 0;  // until it goes
-};
-
-// The view of the document: not part of it, saved with it.
-struct DocumentView {
-    Camera camera{{0, 0, 8}, {0, 0, 0}};
-    // The file had no camera and the view has not been touched: as long as the scene has not been edited
-    // either, Viewer frames it, anew for each size of the viewport. Whoever changes `camera` ends it.
-    bool automatic = true;
 };
 
 // A normal as a drag left it, and the length that its handle's arrow goes by: with its own the tip

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "app/panels/camera_moves.h"
 #include "app/shape/shapes.h"
 #include "app/viewer/picking.h"
 #include "core/scene/scene_fault.h"
@@ -20,6 +21,7 @@ constexpr double click_slack = 4;          // pixels at scale 1 that a click may
 constexpr double double_click_time = 0.4;  // seconds from press to press
 constexpr double skeleton_radius = 9;      // pixels at scale 1 from which a skeleton is clicked
 constexpr double fine = 0.1;               // of the pointer's way, with Shift
+constexpr double wheel_pause = 0.6;        // seconds after which a turn of the wheel is another one
 
 double distance(WindowPoint a, WindowPoint b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
@@ -74,12 +76,6 @@ std::optional<double> arrow_of(const ViewerState& state, std::size_t element) {
     return std::nullopt;
 }
 
-void set_camera(ViewerState& state, const Camera& camera) {
-    if (camera == state.view.camera) return;
-    state.view.camera = camera;
-    state.view.automatic = false;
-}
-
 }  // namespace
 
 std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
@@ -106,6 +102,7 @@ void ViewportMouse::follow(ViewerState& state, const Input& input) {
 
 void ViewportMouse::update(ViewerState& state, const Input& input) {
     clock_ += input.elapsed;
+    if (clock_ - wheeled_when_ > wheel_pause) end_wheel(state);
     // the drag was ended by something else: another document was opened
     if (does_ == Does::drag && !state.document.dragging()) let_go();
 
@@ -125,8 +122,11 @@ void ViewportMouse::update(ViewerState& state, const Input& input) {
     }
     const bool free = !ImGui::GetIO().WantCaptureMouse && input.mouse_inside &&
                       state.viewport.contains(input.mouse);
-    if (input.wheel != 0 && free && (does_ == Does::nothing || does_ == Does::press))
-        set_camera(state, zoomed(state.projection(), in_picture(state, input.mouse), input.wheel));
+    if (input.wheel != 0 && free && (does_ == Does::nothing || does_ == Does::press)) {
+        drag_camera(state, zoomed(state.projection(), in_picture(state, input.mouse), input.wheel));
+        wheel_gesture_ = state.view.gesture();
+        wheeled_when_ = clock_;
+    }
 
     last_ = input.mouse;
     was_down_ = input.mouse_down;
@@ -157,6 +157,7 @@ void ViewportMouse::press(ViewerState& state, const Input& input) {
     if (!pressed(MouseButton::left) && !pressed(MouseButton::middle)) return;
     if (ImGui::GetIO().WantCaptureMouse || !state.viewport.contains(input.mouse)) return;
 
+    end_wheel(state);
     button_ = pressed(MouseButton::left) ? MouseButton::left : MouseButton::middle;
     if (button_ == MouseButton::middle) {
         does_ = Does::pan;
@@ -207,14 +208,15 @@ void ViewportMouse::move(ViewerState& state, const Input& input) {
         case Does::press:
             if (distance(pressed_at_, input.mouse) <= click_slack * state.scale) return;
             does_ = Does::orbit;
-            set_camera(state, orbited(state.projection(), input.mouse.x - pressed_at_.x,
-                                      input.mouse.y - pressed_at_.y));
+            end_wheel(state);
+            drag_camera(state, orbited(state.projection(), input.mouse.x - pressed_at_.x,
+                                       input.mouse.y - pressed_at_.y));
             return;
         case Does::orbit:
-            set_camera(state, orbited(state.projection(), dx, dy));
+            drag_camera(state, orbited(state.projection(), dx, dy));
             return;
         case Does::pan:
-            set_camera(state, panned(state.projection(), dx, dy));
+            drag_camera(state, panned(state.projection(), dx, dy));
             return;
         case Does::nothing:
         case Does::grab:
@@ -285,15 +287,22 @@ void ViewportMouse::release(ViewerState& state) {
             // the first click selected, and so brought a handle under the pointer
             if (again_ && dx_ == 0 && dy_ == 0) center_orbit(state);
             break;
-        case Does::nothing:
-        case Does::grab:
         case Does::orbit:
         case Does::pan:
+            state.view.end_move();
+            break;
+        case Does::nothing:
+        case Does::grab:
         case Does::ignore:
             break;
     }
     grabbed_.reset();
     axis_.reset();
+}
+
+void ViewportMouse::end_wheel(ViewerState& state) {
+    if (wheel_gesture_ != 0 && wheel_gesture_ == state.view.gesture()) state.view.end_move();
+    wheel_gesture_ = 0;
 }
 
 void ViewportMouse::let_go() {
@@ -315,7 +324,7 @@ void ViewportMouse::click(ViewerState& state) {
 void ViewportMouse::center_orbit(ViewerState& state) const {
     const Projection view = state.projection();
     const auto picked = pick_surface(state.document.scene(), view, in_picture(state, pressed_at_));
-    if (picked) set_camera(state, centred(view, *picked->place));
+    if (picked) move_camera(state, centred(view, *picked->place));
 }
 
 }  // namespace ivory

@@ -69,6 +69,7 @@ class ViewportMouse {
     void let_go();
     void click(ViewerState& state);
     void center_orbit(ViewerState& state) const;
+    void end_wheel(ViewerState& state);
 
     std::optional<Handle> grabbed_, hovered_;
     std::optional<int> axis_;
@@ -80,6 +81,8 @@ class ViewportMouse {
     double clock_ = 0, pressed_when_ = -1;  // seconds
     bool clicked_before_ = false;           // the last press was a click's
     bool again_ = false;                    // this one makes it a double click
+    double wheeled_when_ = 0;
+    std::size_t wheel_gesture_ = 0;  // the move of the camera that turns of the wheel are part of
 
     Element start_;  // of the drag
     Vec3d grabbed_from_;

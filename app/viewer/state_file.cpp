@@ -18,6 +18,15 @@ using nlohmann::json;
 
 json triple(const Vec3d& v) { return json::array({v.x, v.y, v.z}); }
 
+json camera_json(const Camera& camera) {
+    return {{"position", triple(camera.position)},
+            {"target", triple(camera.target)},
+            {"up", triple(camera.up)},
+            {"fov", camera.fov},
+            {"projection", projection_words[static_cast<std::size_t>(camera.projection)]},
+            {"height", seen_height(camera)}};
+}
+
 json rectangle(const WindowRect& rect) {
     return json::array({rect.x, rect.y, rect.width, rect.height});
 }
@@ -46,10 +55,12 @@ json state_json(Viewer& viewer, std::uint64_t tiles_before) {
     all["selection"] = nullptr;
     if (document.selected()) all["selection"] = names[*document.selected()];
     const Camera& camera = state.view.camera;
-    all["camera"] = {{"position", triple(camera.position)},
-                     {"target", triple(camera.target)},
-                     {"up", triple(camera.up)},
-                     {"fov", camera.fov}};
+    all["camera"] = camera_json(camera);
+    all["view"] = {{"undo", state.view.can_undo()},
+                   {"redo", state.view.can_redo()},
+                   {"saved", state.view.is_saved()},
+                   {"chosen", nullptr}};
+    if (state.panels.view) all["view"]["chosen"] = *state.panels.view;
     all["handles"] = handles_json(state, names);
     all["widgets"] = json::object();
     for (const auto& [id, widget] : state.widgets.all())
@@ -99,6 +110,8 @@ json whole_scene_json(const ViewerState& state) {
     if (!scene.lights) scene.lights = default_lights();
     const std::vector<std::string> names = element_names(scene);
     json whole = json::parse(write_scene(scene));
+    whole["camera"] = camera_json(*scene.camera);
+    if (scene.views.empty()) whole["views"] = json::array();
     for (std::size_t i = 0; i < scene.elements.size(); ++i) {
         json& element = whole["elements"][i];
         element["name"] = names[i];

@@ -11,9 +11,11 @@
 
 namespace ivory {
 
-// `viewport`, `selection`, `camera`, `handles`, `widgets`, `tiles`, `pixels`, `final`,
-// `milliseconds`, and beyond the contract `message`, `dirty`, `undo`, `redo`, `path`, `theme`,
-// `scale`. `tiles_before`: SessionTotals::tiles_traced at the last state; `traced` counts from
+// `viewport`, `selection`, `camera` (its `height` in a perspective view what is seen at the target),
+// `handles`, `widgets`, `tiles`, `pixels`, `final`, `milliseconds`, and beyond the contract `message`,
+// `dirty`, `undo`, `redo`, `path`, `theme`, `scale`, `view` (`undo`, `redo` whether there are moves of
+// the camera to be, `saved` whether the camera is the file's or automatic, `chosen` the saved view that
+// was chosen last). `tiles_before`: SessionTotals::tiles_traced at the last state; `traced` counts from
 // there.
 [[nodiscard]] nlohmann::json state_json(Viewer& viewer, std::uint64_t tiles_before);
 

@@ -53,7 +53,9 @@ bool overlap(const WindowRect& a, const WindowRect& b) {
 
 // A choice lies under its options, a list's row beside its eye.
 bool may_overlap(const std::string& a, const std::string& b) {
-    return a.starts_with("element.kernel") && b.starts_with("element.kernel");
+    for (const char* choice : {"element.kernel", "camera.projection"})
+        if (a.starts_with(choice) && b.starts_with(choice)) return true;
+    return false;
 }
 
 TEST(Layout, NothingOverlapsAndNothingIsCutOff) {

@@ -30,7 +30,7 @@ class ViewerBench {
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         apply_theme(state.theme, scale);
-        if (scene.camera) state.view = {*scene.camera, false};
+        if (scene.camera) state.view = {*scene.camera, scene.camera};
         if (!scene.elements.empty()) state.document.edit("Open", std::move(scene));
         turns(3);
     }
@@ -82,8 +82,10 @@ class ViewerBench {
     void key(Key key, Modifiers modifiers = {}) {
         if (modifiers.control) hold(Key::control);
         if (modifiers.shift) hold(Key::shift);
+        if (modifiers.alt) hold(Key::alt);
         hold(key);
         let(key);
+        if (modifiers.alt) let(Key::alt);
         if (modifiers.shift) let(Key::shift);
         if (modifiers.control) let(Key::control);
         turns(2);

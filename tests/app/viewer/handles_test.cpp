@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "app/document/elements.h"
+#include "core/field/field.h"
 #include "tests/app/panels/viewer_bench.h"
 
 namespace ivory {
@@ -26,6 +28,23 @@ Scene figure() {
     scene.camera = Camera{{3, 2, 7}, {0, 0, 0}};
     return scene;
 }
+
+// In both projections.
+class InEachProjection : public testing::TestWithParam<Camera::Projection> {
+  protected:
+    static Scene figure() {
+        Scene scene = ivory::figure();
+        scene.camera = in_projection(*scene.camera, GetParam());
+        return scene;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(, InEachProjection,
+                         testing::Values(Camera::Projection::perspective,
+                                         Camera::Projection::orthographic),
+                         [](const auto& test) {
+                             return std::string(
+                                 projection_words[static_cast<std::size_t>(test.param)]);
+                         });
 
 // What a drag moves: element, handle, and its number beyond that one of the picture.
 struct Grabbed {
@@ -48,7 +67,7 @@ TEST(Handles, EveryDegreeOfFreedomHasOne) {
     EXPECT_EQ(names[2], (std::vector<std::string>{"center", "normal", "radius"}));
 }
 
-TEST(Handles, ADragMovesWhatIsSeenByExactlySoManyPixels) {
+TEST_P(InEachProjection, ADragMovesWhatIsSeenByExactlySoManyPixels) {
     for (const Grabbed& grabbed : free_handles) {
         SCOPED_TRACE(grabbed.handle);
         ViewerBench bench(figure());
@@ -83,7 +102,7 @@ TEST(Handles, ItIsTheOneThatIsGrabbedThatMoves) {
     EXPECT_NEAR(after.z, length.z, 1e-14);
 }
 
-TEST(Handles, TheRadiusFollowsThePointerAndEndsAtZero) {
+TEST_P(InEachProjection, TheRadiusFollowsThePointerAndEndsAtZero) {
     ViewerBench bench(figure());
     bench.state.document.select(2);
     bench.turn();
@@ -99,7 +118,7 @@ TEST(Handles, TheRadiusFollowsThePointerAndEndsAtZero) {
     EXPECT_EQ(radius(), 0);
 }
 
-TEST(Handles, ALockedAxisMovesThatCoordinateAlone) {
+TEST_P(InEachProjection, ALockedAxisMovesThatCoordinateAlone) {
     const Key keys[3] = {Key::x, Key::y, Key::z};
     for (const Grabbed& grabbed : free_handles) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -139,7 +158,7 @@ TEST(Handles, ALockedAxisMovesThatCoordinateAlone) {
     }
 }
 
-TEST(Handles, AlongAnAxisThePointerOnItsLineIsMetExactly) {
+TEST_P(InEachProjection, AlongAnAxisThePointerOnItsLineIsMetExactly) {
     ViewerBench bench(figure());
     bench.state.document.select(0);
     bench.turn();
@@ -392,7 +411,7 @@ TEST(Handles, WithTheViewScaledTheyAreAsLargeToTheHand) {
     EXPECT_NEAR(bench.handle("position").seen.x, handle.seen.x + 74, 1e-7);
 }
 
-TEST(Viewport, AClickSelectsWhatContributesMost) {
+TEST_P(InEachProjection, AClickSelectsWhatContributesMost) {
     ViewerBench bench(figure());
     const Projection view = bench.state.projection();
     const auto window = [&](Vec3d place) {
@@ -408,7 +427,7 @@ TEST(Viewport, AClickSelectsWhatContributesMost) {
     EXPECT_EQ(bench.state.document.selected(), std::nullopt);
 }
 
-TEST(Viewport, AClickBesideTheSurfaceSelectsASkeletonThere) {
+TEST_P(InEachProjection, AClickBesideTheSurfaceSelectsASkeletonThere) {
     Scene scene = figure();
     scene.threshold = 1e6;  // no surface at all
     ViewerBench bench(scene);
@@ -419,7 +438,7 @@ TEST(Viewport, AClickBesideTheSurfaceSelectsASkeletonThere) {
     EXPECT_EQ(bench.state.document.selected(), 1u);
 }
 
-TEST(Viewport, TheMouseOrbitsPansAndZooms) {
+TEST_P(InEachProjection, TheMouseOrbitsPansAndZooms) {
     ViewerBench bench(figure());
     const Camera before = bench.state.view.camera;
     const auto scene = bench.state.document.scene_value();
@@ -441,16 +460,12 @@ TEST(Viewport, TheMouseOrbitsPansAndZooms) {
     const Camera shifted = bench.state.view.camera;
     bench.move_to({empty.x + 300, empty.y + 200});
     bench.turn(WheelTurned{0, 1});
-    const auto distance = [](const Camera& camera) {
-        const Vec3d line = camera.position - camera.target;
-        return std::sqrt(dot(line, line));
-    };
-    EXPECT_LT(distance(bench.state.view.camera), distance(shifted));
+    EXPECT_NEAR(seen_height(bench.state.view.camera), 0.88 * seen_height(shifted), 1e-12);
     EXPECT_EQ(bench.state.document.scene_value(), scene);  // the view is not the document
     EXPECT_FALSE(bench.state.view.automatic);
 }
 
-TEST(Viewport, ADoubleClickSetsTheOrbitsCentreOnTheSurface) {
+TEST_P(InEachProjection, ADoubleClickSetsTheOrbitsCentreOnTheSurface) {
     ViewerBench bench(figure());
     const Projection view = bench.state.projection();
     const WindowPoint seen = view.project({0.5, 1.25, -0.5}).value();
@@ -468,6 +483,91 @@ TEST(Viewport, ADoubleClickSetsTheOrbitsCentreOnTheSurface) {
     EXPECT_NEAR(was.y, std::floor(seen.y) + 0.5, 1e-6);
     EXPECT_NE(target, (Vec3d{0, 0, 0}));
     EXPECT_EQ(bench.state.document.selected(), 0u);  // by its first click
+}
+
+// One entry for each gesture, apart from edits.
+TEST(Viewport, AMoveOfTheCameraIsUndoneApartFromEdits) {
+    ViewerBench bench(figure());
+    std::vector<Camera> cameras{bench.state.view.camera};
+    const auto note = [&] { cameras.push_back(bench.state.view.camera); };
+    const WindowPoint empty{bench.state.viewport.x + 20.0, bench.state.viewport.y + 20.0};
+    bench.drag(empty, 60, 25);
+    note();
+    bench.hold(Key::shift);
+    bench.drag(empty, 40, 10);
+    bench.let(Key::shift);
+    note();
+    for (int step = 0; step < 3; ++step) bench.turn(WheelTurned{0, 1});
+    bench.turns(60);  // the hand rests
+    note();
+    bench.turn(WheelTurned{0, -1});
+    note();
+    bench.key(Key::digit5);
+    note();
+    bench.key(Key::digit3);
+    note();
+    bench.state.document.select(0);
+    bench.turn();
+    bench.drag(bench.handle("position").at, 12, 9);
+    const Scene edited = bench.scene();
+
+    const Modifiers alt{.alt = true};
+    for (std::size_t i = cameras.size(); i-- > 1;) {
+        EXPECT_EQ(bench.state.view.camera, cameras[i]) << i;
+        bench.key(Key::left, alt);
+    }
+    EXPECT_EQ(bench.state.view.camera, cameras[0]);
+    EXPECT_FALSE(bench.state.view.can_undo());
+    EXPECT_EQ(bench.scene(), edited);
+    for (const Camera& camera : cameras) {
+        EXPECT_EQ(bench.state.view.camera, camera);
+        bench.key(Key::right, alt);
+    }
+    bench.key(Key::z, {.control = true});
+    EXPECT_NE(bench.scene(), edited);
+    EXPECT_EQ(bench.state.view.camera, cameras.back());
+
+    // another move ends what was undone
+    bench.key(Key::left, alt);
+    EXPECT_TRUE(bench.state.view.can_redo());
+    bench.drag(empty, -30, 5);
+    EXPECT_FALSE(bench.state.view.can_redo());
+}
+
+// The plane of an orthographic camera is moved back when a hand brings the surface to it; what is seen
+// stays.
+TEST(Viewport, AnOrthographicCamerasPlaneStaysBeforeTheSurface) {
+    ViewerBench bench(figure());
+    bench.key(Key::digit5);
+    bench.state.document.select(0);
+    bench.turn();
+    const Camera before = bench.state.view.camera;
+    const Vec3d back = bench.state.projection().back();
+    const auto depth_of = [&](const Camera& camera) {
+        return dot(camera.position - camera.target, back);
+    };
+    Scene scene = bench.scene();
+    scene.elements[0].skeleton = PointSkeleton{(depth_of(before) + 3) * back};
+    bench.state.document.edit("Move", scene);
+    bench.turn();
+    const Camera after = bench.state.view.camera;
+    EXPECT_GT(depth_of(after), depth_of(before) + 4);
+    EXPECT_EQ(after.target, before.target);
+    EXPECT_EQ(after.height, before.height);
+    EXPECT_TRUE(plane_is_before(after, compile(scene).box));
+    const Projection seen_before(before, bench.state.viewport.size());
+    for (const Vec3d place : {Vec3d{1, 2, 3}, Vec3d{-1, 0.5, 0}}) {
+        EXPECT_NEAR(bench.state.projection().project(place)->x, seen_before.project(place)->x,
+                    1e-9);
+        EXPECT_NEAR(bench.state.projection().project(place)->y, seen_before.project(place)->y,
+                    1e-9);
+    }
+    // nothing that could be undone: the next is the switch to orthographic
+    bench.key(Key::left, {.alt = true});
+    EXPECT_EQ(bench.state.view.camera, *figure().camera);
+    // and back again it is before the surface as it is now
+    bench.key(Key::right, {.alt = true});
+    EXPECT_TRUE(plane_is_before(bench.state.view.camera, compile(scene).box));
 }
 
 TEST(Viewport, PanelsKeepTheirClicksAndWheel) {

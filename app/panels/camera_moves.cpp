@@ -1,0 +1,80 @@
+#include "app/panels/camera_moves.h"
+
+#include <imgui.h>
+
+#include <string>
+
+#include "core/field/field.h"
+#include "core/scene/error.h"
+#include "core/scene/scene_json.h"
+
+namespace ivory {
+
+namespace {
+
+bool is_orthographic(const Camera& camera) {
+    return camera.projection == Camera::Projection::orthographic;
+}
+
+// Around the surface of the scene as it stands, proved; of a drag too.
+const Box3& surface_box(ViewerState& state) {
+    PanelMemory& memory = state.panels;
+    if (memory.boxed != state.document.scene_value()) {
+        memory.boxed = state.document.scene_value();
+        memory.surface_box = compile(*memory.boxed).box;
+    }
+    return memory.surface_box;
+}
+
+Camera before_surface(ViewerState& state, const Camera& camera) {
+    return is_orthographic(camera) ? with_plane_before(camera, surface_box(state)) : camera;
+}
+
+}  // namespace
+
+void drag_camera(ViewerState& state, const Camera& camera) {
+    if (camera != state.view.camera) state.view.move_on(before_surface(state, camera));
+}
+
+void move_camera(ViewerState& state, const Camera& camera) {
+    if (camera != state.view.camera) state.view.move_to(before_surface(state, camera));
+}
+
+void drag_camera_as_written(ViewerState& state, const Camera& camera) {
+    const bool section = is_orthographic(camera) && !plane_is_before(camera, surface_box(state));
+    state.view.move_on(camera, section);
+}
+
+void set_camera(ViewerState& state, const Camera& camera) {
+    state.view.end_move();
+    drag_camera_as_written(state, camera);
+    state.view.end_move();
+}
+
+void set_projection(ViewerState& state, Camera::Projection projection) {
+    move_camera(state, in_projection(state.view.camera, projection));
+}
+
+void keep_plane_before_surface(ViewerState& state) {
+    if (!state.view.is_section) state.view.camera = before_surface(state, state.view.camera);
+}
+
+void copy_camera(ViewerState& state) {
+    ImGui::SetClipboardText(write_camera(state.view.camera).c_str());
+    state.say("The camera is in the clipboard");
+}
+
+void paste_camera(ViewerState& state) {
+    const char* const text = ImGui::GetClipboardText();
+    try {
+        const Camera camera =
+            parse_camera(text == nullptr ? "" : text, "the clipboard holds no camera");
+        if (state.message.error) state.message = {};
+        set_camera(state, camera);
+    } catch (const Error& error) {
+        state.say_error(std::string(error.what()) +
+                        "; a camera is {\"position\": [0, 0, 8], \"target\": [0, 0, 0]}");
+    }
+}
+
+}  // namespace ivory
