@@ -2,9 +2,9 @@
 
 #include <imgui.h>
 
+#include <cstddef>
 #include <string>
 
-#include "core/field/field.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 
@@ -16,14 +16,9 @@ bool is_orthographic(const Camera& camera) {
     return camera.projection == Camera::Projection::orthographic;
 }
 
-// Around the surface of the scene as it stands, proved; of a drag too.
+// Around the surface of the scene as it stands, in a drag too.
 const Box3& surface_box(ViewerState& state) {
-    PanelMemory& memory = state.panels;
-    if (memory.boxed != state.document.scene_value()) {
-        memory.boxed = state.document.scene_value();
-        memory.surface_box = compile(*memory.boxed).box;
-    }
-    return memory.surface_box;
+    return state.panels.surface.around(state.document.scene_value());
 }
 
 Camera before_surface(ViewerState& state, const Camera& camera) {
@@ -56,7 +51,15 @@ void set_projection(ViewerState& state, Camera::Projection projection) {
 }
 
 void keep_plane_before_surface(ViewerState& state) {
-    if (!state.view.is_section) state.view.camera = before_surface(state, state.view.camera);
+    if (state.view.is_section || !is_orthographic(state.view.camera)) return;
+    // A drag of the threshold changes what all elements reach. In a large scene the room before the
+    // surface has to serve until it ends.
+    constexpr std::size_t most_in_a_frame = 500;
+    const Document& document = state.document;
+    if (document.dragging() && document.scene().elements.size() > most_in_a_frame &&
+        state.panels.surface.quickly_around(document.scene_value()) == nullptr)
+        return;
+    state.view.camera = before_surface(state, state.view.camera);
 }
 
 void copy_camera(ViewerState& state) {

@@ -26,7 +26,7 @@ void take_document(ViewerState& state, Document document, const DocumentView& vi
     state.panels.dragged = {};
     state.panels.row_shown.reset();
     state.panels.ranged.reset();
-    state.panels.boxed.reset();
+    state.panels.surface = {};
     state.panels.view.reset();
     // neither goes on about another document
     state.panels.file_question.reset();

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/document/file_stamp.h"
-#include "core/math/box3.h"
+#include "app/document/surface_bounds.h"
 #include "core/scene/scene.h"
 
 namespace ivory {
@@ -106,11 +106,11 @@ struct PanelMemory {
     std::optional<std::size_t> row_shown;  // the selection that the list last scrolled to
 
     // Derived from a scene, kept until there is another one.
-    std::shared_ptr<const Scene> named, ranged, boxed;
+    std::shared_ptr<const Scene> named, ranged;
     std::vector<std::string> names;                            // element_names of `named`
     std::unordered_map<std::string_view, std::size_t> places;  // of `names`; empty: not asked for
     ThresholdRange thresholds;                                 // of `ranged`: the slider's ends
-    Box3 surface_box;                                          // of `boxed`; holds its surface
+    SurfaceBounds surface;                                     // of the document's scene
 };
 
 }  // namespace ivory
