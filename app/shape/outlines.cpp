@@ -102,24 +102,64 @@ std::vector<PictureLine> disc_outline(const Projection& view, const Ring& rim, d
     return hull_outline(view, balls);
 }
 
+namespace {
+
+// From infinitely far away a ring of radius r is seen as an ellipse with the half axes r and r c, c the
+// cosine of its tilt, and the tube around it as all that is within the distance of that: its edges are
+// the ellipse's parallel curves. Where the ellipse's normal has the direction (cos a, sin a),
+//   x = r cos a / k,  y = r c^2 sin a / k,  k^2 = cos^2 a + c^2 sin^2 a.
+// Equal steps of the normal serve the ends of a narrow ellipse, equal steps of the ring its sides; one
+// that is seen edge on has ends alone, and the sides are straight between them.
+std::vector<PictureLine> parallel_ring_outline(const Projection& view, const Ring& ring,
+                                               double distance) {
+    const Vec3d across = cross(ring.normal(), view.back());
+    const double sine = std::sqrt(dot(across, across));
+    const double c = std::abs(dot(ring.normal(), view.back()));
+    const Vec3d major = sine > 1e-9 ? (1 / sine) * across : view.right();
+    const Vec3d minor = cross(view.back(), major);
+    constexpr double edge_on = 1e-9;
+    std::vector<double> angles;
+    for (int step = 0; step < outline_steps; ++step) {
+        const double angle = 2 * std::numbers::pi * (step + 0.5) / outline_steps - std::numbers::pi;
+        angles.push_back(angle);
+        if (c > edge_on) angles.push_back(std::atan2(std::sin(angle), c * std::cos(angle)));
+    }
+    std::sort(angles.begin(), angles.end());
+    std::vector<PictureLine> edges;
+    for (const double side : {1.0, -1.0}) {
+        // the hole is closed
+        if (side < 0 && distance >= c * ring.radius()) break;
+        PictureLine line;
+        for (const double angle : angles) {
+            const double x = std::cos(angle), y = std::sin(angle);
+            const double share = ring.radius() / std::max(std::hypot(x, c * y), 1e-300);
+            const auto seen =
+                view.project(ring.center() + (share * x + side * distance * x) * major +
+                             (share * c * c * y + side * distance * y) * minor);
+            if (!seen) return {};
+            line.push_back(*seen);
+        }
+        edges.push_back(std::move(line));
+    }
+    return edges;
+}
+
+}  // namespace
+
 // The outline of a tube around a curve: where its normal n, across the tangent, is also across the
 // line of sight. With v the curve's place seen from the camera, n . v = -radius; among the unit
-// vectors across the tangent that fixes two, one for each edge. From infinitely far away n . v = 0
-// for the view's direction v.
+// vectors across the tangent that fixes two, one for each edge.
 std::vector<PictureLine> ring_outline(const Projection& view, const Ring& ring, double distance) {
+    if (view.is_orthographic()) return parallel_ring_outline(view, ring, distance);
     std::vector<PictureLine> edges(2);
     for (int step = 0; step < outline_steps; ++step) {
         const Vec3d place = at_step(ring, step, outline_steps);
         const Vec3d outward = ring.radius() > 0 ? unit(place - ring.center()) : ring.first_axis();
-        const bool parallel = view.is_orthographic();
-        const Vec3d from_camera = parallel ? -view.back() : place - view.camera().position;
+        const Vec3d from_camera = place - view.camera().position;
         const double u = dot(from_camera, outward), v = dot(from_camera, ring.normal());
         const double size = std::hypot(u, v);
-        // where the line of sight runs along the tube
-        constexpr double along = 1e-9;
-        if (parallel && size < along) continue;
-        if (!parallel && size <= distance * 1.0001) return {};
-        const double toward = std::atan2(v, u), half = std::acos(parallel ? 0 : -distance / size);
+        if (size <= distance * 1.0001) return {};  // the line of sight runs along the tube
+        const double toward = std::atan2(v, u), half = std::acos(-distance / size);
         for (std::size_t edge = 0; edge < 2; ++edge) {
             const double angle = edge == 0 ? toward + half : toward - half;
             const auto seen = view.project(

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/shape/outlines.h"
 #include "core/scene/scene_fault.h"
 
 namespace ivory {
@@ -80,6 +81,40 @@ TEST(ShapesInHand, TheCoverHoldsAllWithinItsDistance) {
                         const Vec3d away = place + 0.5 * element.width * by - ball.center;
                         return std::sqrt(dot(away, away)) <= ball.radius * (1 + 1e-12);
                     }));
+    }
+}
+
+// Of a circle from all sides, edge on too: each place of its outline is that far from the circle as it
+// is seen, and nothing of the tube is seen beyond.
+TEST(ShapesInHand, AnOrthographicCameraSeesTubesAsWideAsTheyAre) {
+    constexpr double radius = 1.5, distance = 0.4;
+    for (const Vec3d normal : {Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{0, 1, 1e-7}, Vec3d{0, 1, 0.03},
+                               Vec3d{1, 0.4, 0.5}, Vec3d{-2, 1, 0}}) {
+        Element element;
+        element.skeleton = CircleSkeleton{{0.3, -0.2, 1}, normal, radius};
+        element.width = distance;
+        const Projection view(
+            {{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 40, Camera::Projection::orthographic, 6.0},
+            {600, 600});
+        std::vector<WindowPoint> circle;
+        const Ring ring({0.3, -0.2, 1}, normal, radius);
+        for (int step = 0; step < 20'000; ++step)
+            circle.push_back(view.project(ring.at(step * 3.14159265358979 / 10'000)).value());
+        const std::vector<PictureLine> edges = outline_of(view, element, 1);
+        ASSERT_FALSE(edges.empty());
+        double left = 600, right = 0;
+        for (const WindowPoint& at : edges.front()) {
+            double nearest = 1e9;
+            for (const WindowPoint& on : circle)
+                nearest = std::min(nearest, std::hypot(at.x - on.x, at.y - on.y));
+            EXPECT_NEAR(nearest, 100 * distance, 0.01);
+            left = std::min(left, at.x);
+            right = std::max(right, at.x);
+        }
+        const auto [first, last] = std::minmax_element(
+            circle.begin(), circle.end(), [](WindowPoint a, WindowPoint b) { return a.x < b.x; });
+        EXPECT_NEAR(left, first->x - 100 * distance, 0.2);
+        EXPECT_NEAR(right, last->x + 100 * distance, 0.2);
     }
 }
 
