@@ -115,7 +115,8 @@ inline constexpr GlEnum blend = 0x0BE2, cull_face = 0x0B44, depth_test = 0x0B71,
                         stencil_test = 0x0B90, scissor_test = 0x0C11, framebuffer_srgb = 0x8DB9;
 inline constexpr GlEnum unsigned_byte = 0x1401, unsigned_short = 0x1403, unsigned_int = 0x1405,
                         floating = 0x1406;
-inline constexpr GlEnum rgb = 0x1907, rgba = 0x1908, rgba8 = 0x8058;
+inline constexpr GlEnum red = 0x1903, r8 = 0x8229, rgb = 0x1907, rgba = 0x1908, rgba8 = 0x8058,
+                        srgb8_alpha8 = 0x8C43;
 inline constexpr GlEnum texture_2d = 0x0DE1, texture0 = 0x84C0, texture_mag_filter = 0x2800,
                         texture_min_filter = 0x2801, texture_wrap_s = 0x2802,
                         texture_wrap_t = 0x2803, nearest = 0x2600, linear = 0x2601,

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <exception>
+#include <limits>
 #include <new>
 #include <string>
 #include <system_error>
@@ -29,6 +30,15 @@ void yield_to_other_threads() {
     // on Linux a thread has a priority of its own; without the right to it all goes on as it is
     static_cast<void>(setpriority(PRIO_PROCESS, 0, 5));
 #endif
+}
+
+// Between the frames that show refinement: more would only take time from the tracer.
+constexpr std::chrono::milliseconds refinement_interval{30};
+// After the last edit, before a hand rests: fine tiles that come earlier would only flicker.
+constexpr std::chrono::milliseconds rest{120};
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
 }
 
 double milliseconds_between(Clock::time_point from, Clock::time_point to) {
@@ -56,20 +66,16 @@ RenderSession::Director::~Director() {
     condition_.notify_all();
 }
 
-bool RenderSession::Director::first_picture_ready() const {
-    const std::lock_guard lock(mutex_);
-    return board_.number == wanted_number_ &&
-           (board_.readiness() != Readiness::partial || !board_.fault.empty());
+bool RenderSession::Director::wait_until_showable(Time time) const {
+    std::unique_lock lock(mutex_);
+    return condition_.wait_until(lock, time, [this] {
+        return board_.number == wanted_number_ && (board_.showable() || !board_.fault.empty());
+    });
 }
 
 SessionTotals RenderSession::Director::totals() const {
     const std::lock_guard lock(mutex_);
     return totals_;
-}
-
-// Under the lock.
-bool RenderSession::Director::enough() const {
-    return patience_.enough(board_.readiness(), Clock::now());
 }
 
 // --- the window's thread ---
@@ -78,48 +84,44 @@ void RenderSession::Director::show(PictureRequest request) {
     const std::lock_guard lock(mutex_);
     wanted_ = std::move(request);
     ++wanted_number_;
-    if (job_ != nullptr) {
-        patience_.supersede(Clock::now());
-        if (enough()) job_->cancel();
-    }
+    if (job_ != nullptr && job_yields_) job_->cancel();
     condition_.notify_all();
 }
 
-PictureChange RenderSession::Director::poll(FirstPicture first, ShownPicture& shown,
-                                            PictureState& state, double& until_due) {
+PictureChange RenderSession::Director::poll(ShownPicture& shown, PictureState& state,
+                                            Time& shown_since) {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
     PictureChange change;
-    until_due = -1;
-    if (board_.readiness() != Readiness::partial)
-        until_due = take_board(first, shown, change, state, now);
-    if (overtaken_ && overtaken_->number > shown_number_) {
-        shown = std::move(overtaken_->picture);
-        change.all = change.replaced = true;
+    if (board_.showable()) {
+        board_.hand_over(shown, change);
+        if (board_.number != shown_number_) {
+            change.replaced = true;
+            now_shown(board_.number, board_.request, state, now);
+        }
+    } else if (overtaken_ && overtaken_->number > shown_number_) {
+        take_overtaken(shown, change);
         now_shown(overtaken_->number, overtaken_->request, state, now);
     }
     overtaken_.reset();
+    shown_since = shown_since_;
     report(shown, state, now);
     return change;
 }
 
-// What is new on the board, or in how many seconds its picture is due; < 0: it is shown.
-double RenderSession::Director::take_board(FirstPicture first, ShownPicture& shown,
-                                           PictureChange& change, PictureState& state,
-                                           Clock::time_point now) {
-    const bool is_new = board_.number != shown_number_;
-    if (is_new) {
-        const bool certain = board_.final || shown_number_ == 0;
-        const Clock::time_point due =
-            first_picture_due(first, board_.readiness(), certain, board_.request.since);
-        if (now < due) return milliseconds_between(now, due) / 1000;
+void RenderSession::Director::take_overtaken(ShownPicture& shown, PictureChange& change) {
+    ShownPicture& picture = overtaken_->picture;
+    change.replaced = change.coarse = true;
+    change.all = !picture.color.empty() || shown.size != picture.size;
+    if (picture.color.empty()) {  // no tile of it is seen
+        const auto pixels = static_cast<std::size_t>(picture.size.width) *
+                            static_cast<std::size_t>(picture.size.height);
+        picture.color = std::move(shown.color);
+        picture.depth = std::move(shown.depth);
+        picture.color.resize(pixels);
+        picture.depth.resize(pixels);
     }
-    board_.hand_over(shown, change);
-    if (is_new) {
-        change.replaced = true;
-        now_shown(board_.number, board_.request, state, now);
-    }
-    return -1;
+    shown = std::move(picture);
 }
 
 void RenderSession::Director::now_shown(std::uint64_t number, const PictureRequest& request,
@@ -128,6 +130,8 @@ void RenderSession::Director::now_shown(std::uint64_t number, const PictureReque
     shown_number_ = number;
     shown_scene_ = request.scene;
     shown_camera_ = request.camera;
+    shown_since_ = request.since;
+    shown_at_ = now;
 }
 
 void RenderSession::Director::report(const ShownPicture& shown, PictureState& state,
@@ -136,7 +140,12 @@ void RenderSession::Director::report(const ShownPicture& shown, PictureState& st
     state.scene = shown_scene_;
     state.camera = shown_camera_;
     state.size = shown.size;
-    state.depth = shown.depth;
+    const auto fine =
+        static_cast<std::size_t>(std::count(shown.fine.begin(), shown.fine.end(), std::uint8_t{1}));
+    const bool all = fine == shown.fine.size();
+    state.fine = all ? 1 : static_cast<double>(fine) / static_cast<double>(shown.fine.size());
+    state.resolution = all ? 1 : shown.coarse.step;
+    state.depth = {shown.depth, shown.fine, shown.coarse.depth, shown.coarse.size};
     state.threads = settings_.threads;
     state.final = current && shown_number_ == wanted_number_ && board_.final;
     const auto pixels = static_cast<double>(board_.pixels());
@@ -167,7 +176,6 @@ void RenderSession::Director::direct() {
         in_work_ = *std::exchange(wanted_, std::nullopt);
         const PictureRequest request = in_work_;
         const std::uint64_t number = wanted_number_;
-        patience_.begin();
         lock.unlock();
         std::string fault;
         try {
@@ -187,22 +195,28 @@ void RenderSession::Director::fail(std::uint64_t number, const std::string& faul
         const std::lock_guard lock(mutex_);
         job_ = nullptr;
         canvas_.abandon();
-        board_.number = number;
-        board_.final = false;
-        board_.fault = fault;
+        coarse_canvas_.reset();
+        board_.fail(number, fault);
+        condition_.notify_all();
     }
     settings_.wake();
 }
 
 // One picture, from its scene to its last tile or until it is cancelled.
 void RenderSession::Director::work(std::uint64_t number, const PictureRequest& request) {
+    const Time start = Clock::now();
     const CanvasWork first = canvas_.follow(request);
     begin(number, request, first);
-    bool going_on = first_pass(request, first);
-    if (going_on && canvas_.is_inexact()) {
-        settings_.wake();
-        going_on = hand_rests(request) && pass_at_rest(request);
-    }
+    // How long it waited for the picture before it tells nothing of what this one takes; most of the
+    // time may go into compiling, and still there has to be something to see.
+    const double given = seconds_between(request.since, request.due);
+    const double budget = std::max(given - seconds_between(start, Clock::now()), given / 2);
+    bool going_on = first_picture(request, first, budget);
+    const bool is_coarse = !canvas_.unfinished().empty();
+    if (going_on && (is_coarse || canvas_.is_inexact())) going_on = hand_rests(number, request);
+    if (going_on && is_coarse) going_on = refine(request);
+    if (going_on && canvas_.is_inexact()) going_on = make_exact(request);
+    // what follows the final picture goes on from here, as long as going_on
     end(going_on);
     if (going_on) settings_.wake();
 }
@@ -210,11 +224,12 @@ void RenderSession::Director::work(std::uint64_t number, const PictureRequest& r
 void RenderSession::Director::begin(std::uint64_t number, const PictureRequest& request,
                                     const CanvasWork& work) {
     const std::lock_guard lock(mutex_);
-    if (board_.readiness() != Readiness::partial && board_.number > shown_number_)
+    if (board_.showable() && board_.number > shown_number_)
         overtaken_ = {board_.number, board_.request, board_.copy()};
     board_.begin(number, request, work.selected, canvas_.picture().field->box.empty());
     board_.expect(work.selected, work.kept, work.task != Task::shade);
     ++totals_.begun;
+    if (board_.showable()) condition_.notify_all();
 }
 
 void RenderSession::Director::end(bool complete) {
@@ -223,86 +238,175 @@ void RenderSession::Director::end(bool complete) {
     if (!complete) ++totals_.cancelled;
 }
 
-// Until the picture is what anyone would take for the final one. False: cancelled.
-bool RenderSession::Director::first_pass(const PictureRequest& request, const CanvasWork& work) {
-    const bool complete = run(work, Order::coarse_to_fine, request);
-    {
+FineWork RenderSession::Director::fine_work(const CanvasWork& work) const {
+    return {work.task == Task::shade, canvas_.effort(work.selected), canvas_.whole_effort()};
+}
+
+// Until there is a picture to be shown. False: another one is wanted, and this one would have come
+// late.
+bool RenderSession::Director::first_picture(const PictureRequest& request, CanvasWork work,
+                                            double budget) {
+    const bool goes_on = !std::exchange(rested_, false);
+    const std::chrono::duration<double> longest(2 * budget);
+    for (std::size_t least = 0; true; work = canvas_.unfinished()) {
+        if (work.empty()) break;  // nothing of the edit is to be seen
+        const std::size_t step = resolution_.choose(fine_work(work), budget, goes_on, least);
+        Patience patience{.yields = false};
+        const Time start = Clock::now();
+        if (step + 1 < resolution_steps.size())
+            patience.until = start + std::chrono::duration_cast<Clock::duration>(longest);
+        const bool done = step == 0 ? fine_picture(request, work, patience)
+                                    : coarse_picture(request, resolution_steps[step], patience);
+        if (done || share_done_ > 0)
+            resolution_.learn(step, fine_work(work),
+                              seconds_between(start, Clock::now()) / (done ? 1 : share_done_));
+        if (done) break;
+        least = step + 1;
         const std::lock_guard lock(mutex_);
-        patience_.end(board_.readiness());
-        board_.ended = Clock::now();
+        if (stop_ || wanted_) return false;
     }
-    if (work.task != Task::shade) {
-        settle(work.selected);
-    } else if (complete) {
-        canvas_.finish_shading();
-    }
+    const std::lock_guard lock(mutex_);
+    board_.ended = Clock::now();
+    return !stop_ && !wanted_;
+}
+
+bool RenderSession::Director::fine_picture(const PictureRequest& request, const CanvasWork& work,
+                                           Patience patience) {
+    const bool complete = run_on_canvas(work, Order::plain, request, patience);
+    finish_tiles(work, complete);
     return complete;
 }
 
+bool RenderSession::Director::coarse_picture(const PictureRequest& request, double step,
+                                             Patience patience) {
+    CoarsePicture picture;
+    picture.step = step;
+    picture.size = coarse_size(request.size, step);
+    const WindowSize size = picture.size;
+    if (coarse_canvas_ == nullptr || coarse_canvas_->frame.width != size.width ||
+        coarse_canvas_->frame.height != size.height) {
+        coarse_canvas_.reset();
+        coarse_canvas_ = std::make_unique<Canvas>(size.width, size.height, false);
+    }
+    JobSettings settings;
+    settings.threads = settings_.threads;
+    FrameJob job(canvas_.picture(), *coarse_canvas_, std::move(settings));
+    if (!run(job, patience)) return false;
+    const Frame& frame = coarse_canvas_->frame;
+    picture.color.assign(&frame.color[0], &frame.color[0] + frame.size());
+    picture.depth.resize(frame.size(), std::numeric_limits<float>::infinity());
+    for (std::size_t p = 0; p < frame.size(); ++p)
+        if (possibly_hit(frame.status[p]))
+            picture.depth[p] = static_cast<float>(midpoint(frame.t(p)));
+    {
+        const std::lock_guard lock(mutex_);
+        board_.take_coarse(std::move(picture));
+        condition_.notify_all();
+    }
+    settings_.wake();
+    return true;
+}
+
 // False: something else is wanted before.
-bool RenderSession::Director::hand_rests(const PictureRequest& request) {
+bool RenderSession::Director::hand_rests(std::uint64_t number, const PictureRequest& request) {
     std::unique_lock lock(mutex_);
-    return !condition_.wait_until(lock, hand_rests_at(request.since),
-                                  [this] { return stop_ || wanted_; });
+    // As long as the picture has not been seen, nobody can have moved on.
+    const auto rests_at = [&] {
+        return std::max(request.since, shown_number_ == number ? shown_at_ : request.since) + rest;
+    };
+    while (!stop_ && !wanted_ && Clock::now() < rests_at()) condition_.wait_until(lock, rests_at());
+    rested_ = !stop_ && !wanted_;
+    return rested_;
+}
+
+// Until every pixel is one that anyone would take for the final picture's. False: cancelled.
+bool RenderSession::Director::refine(const PictureRequest& request) {
+    // what is traced now is not traced again
+    if (canvas_.unfinished().task != Task::shade) canvas_.rest();
+    const CanvasWork work = canvas_.unfinished();
+    {
+        const std::lock_guard lock(mutex_);
+        board_.expect(work.selected, work.kept, work.task != Task::shade);
+        board_.refine();
+    }
+    settings_.wake();
+    const bool complete = run_on_canvas(work, Order::from_focus, request, {.yields = true});
+    {
+        const std::lock_guard lock(mutex_);
+        board_.ended = Clock::now();
+    }
+    finish_tiles(work, complete);
+    return complete;
 }
 
 // Until every byte is the final picture's. False: cancelled.
-bool RenderSession::Director::pass_at_rest(const PictureRequest& request) {
-    const CanvasWork rest = canvas_.work_at_rest();
+bool RenderSession::Director::make_exact(const PictureRequest& request) {
+    canvas_.rest();
+    const CanvasWork work = canvas_.kept();
     {
         const std::lock_guard lock(mutex_);
-        // Shading may have shown them all.
-        board_.expect(rest.selected, rest.kept, true);
+        board_.expect(work.selected, work.kept, true);
     }
-    // in plain order: no tile is shown coarser than it is
-    const bool complete = run(rest, Order::plain, request);
-    settle(rest.selected);
+    const bool complete = run_on_canvas(work, Order::plain, request, {.yields = true});
+    finish_tiles(work, complete);
     return complete;
 }
 
 // False: cancelled.
-bool RenderSession::Director::run(const CanvasWork& work, Order order,
-                                  const PictureRequest& request) {
-    if (std::find(work.selected.begin(), work.selected.end(), 1) == work.selected.end())
-        return true;
-    JobSettings job;
-    job.threads = settings_.threads;
-    job.task = work.task;
-    job.order = order;
-    job.keep_lists = true;
-    if (work.task == Task::shade) job.recolored = canvas_.recolored();
-    job.selected = work.selected;
+bool RenderSession::Director::run_on_canvas(const CanvasWork& work, Order order,
+                                            const PictureRequest& request, Patience patience) {
+    if (work.empty()) return true;
+    JobSettings settings;
+    settings.threads = settings_.threads;
+    settings.task = work.task;
+    settings.order = order;
+    settings.keep_lists = true;
+    if (work.task == Task::shade) settings.recolored = canvas_.recolored();
+    settings.selected = work.selected;
     if (request.focus) {
-        job.focus_i = static_cast<int>(request.focus->x);
-        job.focus_j = static_cast<int>(request.focus->y);
+        settings.focus_i = static_cast<int>(request.focus->x);
+        settings.focus_j = static_cast<int>(request.focus->y);
     }
-    job.on_tile = [this](const TileNotice& notice) { deliver(notice); };
-    FrameJob frame_job(canvas_.picture(), canvas_.canvas(), std::move(job));
+    settings.on_tile = [this](const TileNotice& notice) { deliver(notice); };
+    FrameJob job(canvas_.picture(), canvas_.canvas(), std::move(settings));
+    return run(job, patience);
+}
 
-    std::unique_lock lock(mutex_);
-    job_ = &frame_job;
-    if (stop_) frame_job.cancel();
-    if (wanted_) patience_.supersede(Clock::now());  // asked for since then
-    lock.unlock();
-    // `show` and `deliver` cancel what is fine; here the grace of the others ends.
-    while (!frame_job.wait_for(std::chrono::milliseconds(5))) {
-        lock.lock();
-        if (enough()) frame_job.cancel();
-        lock.unlock();
+// False: cancelled.
+bool RenderSession::Director::run(FrameJob& job, Patience patience) {
+    {
+        const std::lock_guard lock(mutex_);
+        job_ = &job;
+        job_yields_ = patience.yields;
+        if (stop_ || (wanted_ && patience.yields)) job.cancel();
     }
-    lock.lock();
-    job_ = nullptr;
-    lock.unlock();
-    return frame_job.finish().complete;
+    // `show` and the destructor cancel it; here its time ends.
+    constexpr std::chrono::milliseconds longest_wait{20};
+    while (true) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+            std::min<Clock::duration>(patience.until - Clock::now(), longest_wait));
+        if (job.wait_for(std::max(left, std::chrono::milliseconds(1)))) break;
+        if (Clock::now() >= patience.until) job.cancel();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        job_ = nullptr;
+    }
+    share_done_ = job.progress();
+    return job.finish().complete;
 }
 
 // The selected tiles of which all pixels have come are the picture's own now, or nearly so: its
 // colours in float may be off by one where the hierarchy is another.
-void RenderSession::Director::settle(const std::vector<std::uint8_t>& selected) {
+void RenderSession::Director::finish_tiles(const CanvasWork& work, bool complete) {
+    if (work.task == Task::shade) {
+        if (complete) canvas_.finish_shading();
+        return;
+    }
     const std::lock_guard lock(mutex_);
     const Squares& tiles = canvas_.canvas().grid.tiles;
-    for (std::size_t tile = 0; tile < selected.size(); ++tile)
-        if (selected[tile] != 0 && board_.tally.own(tile) == tiles.rect(tile).area())
+    for (std::size_t tile = 0; tile < work.selected.size(); ++tile)
+        if (work.selected[tile] != 0 && board_.tally.own(tile) == tiles.rect(tile).area())
             canvas_.finish(tile);
 }
 
@@ -312,16 +416,16 @@ void RenderSession::Director::deliver(const TileNotice& notice) {
     bool wake = false;
     {
         const std::lock_guard lock(mutex_);
-        const Readiness before = board_.readiness();
+        const bool before = board_.showable();
         const std::uint64_t tiles_before = board_.tally.tiles_traced();
         const std::uint64_t more = board_.take(notice, canvas_.canvas());
         totals_.tiles_traced += board_.tally.tiles_traced() - tiles_before;
         if (board_.tracing()) totals_.pixels_traced += more;
-        const Readiness ready = board_.readiness();
-        if (ready == Readiness::partial) return;
-        const bool is_better = ready > before;
-        if (is_better && job_ != nullptr && enough()) job_->cancel();
-        wake = patience_.worth_a_frame(is_better, Clock::now());
+        if (!board_.showable()) return;
+        const Time now = Clock::now();
+        wake = !before || now - last_wake_ >= refinement_interval;
+        if (wake) last_wake_ = now;
+        if (!before) condition_.notify_all();
     }
     if (wake) settings_.wake();
 }

@@ -33,8 +33,10 @@ CanvasWork EditedCanvas::follow(const PictureRequest& request) {
     const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
     if (same.view && same.places && same.threshold && whole) {
         take_colors(scene);
-        return work(Task::shade);
+        task_ = Task::shade;
+        return unfinished();
     }
+    task_ = Task::trace_and_shade;
 
     const bool keeps_lists = take_scene(before.scene.get(), scene, same);
     if (!same.view) {
@@ -58,7 +60,7 @@ CanvasWork EditedCanvas::follow(const PictureRequest& request) {
         else if (tiles_[tile] == Tile::exact)
             tiles_[tile] = Tile::kept;
     }
-    return work(Task::trace_and_shade);
+    return unfinished();
 }
 
 EditedCanvas::Likeness EditedCanvas::likeness(const PictureRequest& before,
@@ -126,16 +128,35 @@ std::optional<std::vector<std::uint8_t>> EditedCanvas::touched_since(const Scene
     return touched_tiles(before, *request_.scene, request_.camera.position, directions_);
 }
 
-CanvasWork EditedCanvas::work(Task task) const {
-    CanvasWork work{task, std::vector<std::uint8_t>(tiles_.size()),
+CanvasWork EditedCanvas::unfinished() const {
+    CanvasWork work{task_, std::vector<std::uint8_t>(tiles_.size()),
                     std::vector<std::uint8_t>(tiles_.size())};
     for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
-        work.selected[tile] = task == Task::shade
-                                  ? !canvas_->stands_empty(tile, picture_.lighting.background)
-                                  : tiles_[tile] == Tile::outdated;
+        work.selected[tile] =
+            task_ == Task::shade
+                ? !is_shaded_ && !canvas_->stands_empty(tile, picture_.lighting.background)
+                : tiles_[tile] == Tile::outdated;
         work.kept[tile] = tiles_[tile] == Tile::kept;
     }
     return work;
+}
+
+double EditedCanvas::effort_of(std::size_t tile) const {
+    constexpr double of_empty = 0.1;
+    return canvas_->tiles[tile].empty ? of_empty : 1;
+}
+
+double EditedCanvas::effort(const std::vector<std::uint8_t>& selected) const {
+    double sum = 0;
+    for (std::size_t tile = 0; tile < selected.size(); ++tile)
+        if (selected[tile] != 0) sum += effort_of(tile);
+    return sum;
+}
+
+double EditedCanvas::whole_effort() const {
+    double sum = 0;
+    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) sum += effort_of(tile);
+    return sum;
 }
 
 void EditedCanvas::finish_shading() {
@@ -147,15 +168,19 @@ bool EditedCanvas::is_inexact() const {
     return is_stretched_ || std::find(tiles_.begin(), tiles_.end(), Tile::kept) != tiles_.end();
 }
 
-CanvasWork EditedCanvas::work_at_rest() {
-    CanvasWork rest = work(Task::trace_and_shade);
-    if (is_stretched_) {
-        compile_anew(*request_.scene);
-        canvas_->forget_lists();
-        rest.kept.assign(rest.kept.size(), 1);
-    }
-    rest.selected = rest.kept;
-    return rest;
+void EditedCanvas::rest() {
+    if (!is_stretched_) return;
+    compile_anew(*request_.scene);
+    canvas_->forget_lists();
+    std::replace(tiles_.begin(), tiles_.end(), Tile::exact, Tile::kept);
+}
+
+CanvasWork EditedCanvas::kept() const {
+    CanvasWork work{Task::trace_and_shade, std::vector<std::uint8_t>(tiles_.size()), {}};
+    for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
+        work.selected[tile] = tiles_[tile] == Tile::kept;
+    work.kept = work.selected;
+    return work;
 }
 
 void EditedCanvas::abandon() {

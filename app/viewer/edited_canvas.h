@@ -1,8 +1,9 @@
 // A canvas that follows a scene as it is edited: for each request it says which tiles are to be made
 // anew, and leaves the others as they are. What it leaves nobody can tell from the request's
-// picture; `work_at_rest` is what is to be done until every byte is.
+// picture; `rest` and `kept` say what is to be done until every byte is.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,10 @@ struct CanvasWork {
     Task task;
     std::vector<std::uint8_t> selected;  // by tile, not 0: to be done
     std::vector<std::uint8_t> kept;      // and these show an earlier scene's pixels until the rest
+
+    [[nodiscard]] bool empty() const {
+        return std::find(selected.begin(), selected.end(), 1) == selected.end();
+    }
 };
 
 // Used by one thread; the canvas is the job's while there is one.
@@ -33,13 +38,22 @@ class EditedCanvas {
     // From now on it is that picture's. Throws as compile and make_view do; then, as after any fault
     // of its jobs, `abandon`.
     [[nodiscard]] CanvasWork follow(const PictureRequest& request);
+    // What is left of that, after a job that was cut short.
+    [[nodiscard]] CanvasWork unfinished() const;
+    // In tiles that see something, as they last were: those that see nothing take a fraction. Of
+    // those that are selected, and of a picture of which nothing is there.
+    [[nodiscard]] double effort(const std::vector<std::uint8_t>& selected) const;
+    [[nodiscard]] double whole_effort() const;
     // All pixels of the tile have been traced and shaded.
     void finish(std::size_t tile) { tiles_[tile] = is_stretched_ ? Tile::kept : Tile::exact; }
     // All that was selected to be shaded has been.
     void finish_shading();
     // Its tiles are not what a canvas would be that had never seen another scene.
     [[nodiscard]] bool is_inexact() const;
-    [[nodiscard]] CanvasWork work_at_rest();
+    // From now on all work is that of such a canvas: there is time to compile the scene.
+    void rest();
+    // Its finished tiles that are not. `rest` comes first, and nothing is unfinished.
+    [[nodiscard]] CanvasWork kept() const;
     // Whatever state it is in: the next picture begins with nothing.
     void abandon();
 
@@ -68,7 +82,7 @@ class EditedCanvas {
     void compile_anew(const Scene& scene);
     void lay_out(WindowSize size);
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> touched_since(const Scene& before);
-    [[nodiscard]] CanvasWork work(Task task) const;
+    [[nodiscard]] double effort_of(std::size_t tile) const;
 
     int threads_;
     double tolerance_;
@@ -80,6 +94,7 @@ class EditedCanvas {
     double lists_threshold_ = 0;  // T for which the canvas' lists are
     Picture picture_;
     std::vector<Tile> tiles_;
+    Task task_ = Task::trace_and_shade;      // what is unfinished wants
     std::vector<TileDirection> directions_;  // of picture_.view; empty: not made yet
     // Elements of picture_.field whose new colours have not come to all tiles yet, and whether
     // those and lights and background have.

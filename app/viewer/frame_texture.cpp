@@ -8,27 +8,62 @@
 
 namespace ivory {
 
+namespace {
+
+// From the first moment of a tile until nothing is seen of what it takes the place of, in seconds:
+// long enough that nothing pops.
+constexpr float fade_time = 0.15f;
+
+void set_filter(const Gl& gl, GlEnum filter) {
+    gl.TexParameteri(gl::texture_2d, gl::texture_min_filter, static_cast<GlInt>(filter));
+    gl.TexParameteri(gl::texture_2d, gl::texture_mag_filter, static_cast<GlInt>(filter));
+    gl.TexParameteri(gl::texture_2d, gl::texture_wrap_s, static_cast<GlInt>(gl::clamp_to_edge));
+    gl.TexParameteri(gl::texture_2d, gl::texture_wrap_t, static_cast<GlInt>(gl::clamp_to_edge));
+}
+
+}  // namespace
+
 FrameTexture::FrameTexture(const Gl& gl) : gl_(gl) {
-    program_ = link_program(gl, "shaders/frame", embedded_file("shaders/frame.vert").data(),
-                            embedded_file("shaders/frame.frag").data());
-    picture_uniform_ = gl.GetUniformLocation(program_, "picture");
-    size_uniform_ = gl.GetUniformLocation(program_, "size");
+    frame_ = make_program("shaders/frame", "shaders/frame.frag");
+    preview_ = make_program("shaders/preview", "shaders/preview.frag");
     gl.GenVertexArrays(1, &array_);  // empty, but core OpenGL draws nothing without one
-    gl.GenTextures(1, &texture_);
-    gl.BindTexture(gl::texture_2d, texture_);
-    gl.TexParameteri(gl::texture_2d, gl::texture_min_filter, gl::nearest);
-    gl.TexParameteri(gl::texture_2d, gl::texture_mag_filter, gl::nearest);
+    for (const auto& [texture, filter] :
+         {std::pair(&texture_, gl::nearest), std::pair(&coarse_, gl::linear),
+          std::pair(&share_texture_, gl::nearest)}) {
+        gl.GenTextures(1, texture);
+        gl.BindTexture(gl::texture_2d, *texture);
+        set_filter(gl, filter);
+    }
 }
 
 FrameTexture::~FrameTexture() {
-    gl_.DeleteTextures(1, &texture_);
+    for (const GlUint* texture : {&texture_, &coarse_, &share_texture_})
+        gl_.DeleteTextures(1, texture);
     gl_.DeleteVertexArrays(1, &array_);
-    gl_.DeleteProgram(program_);
+    for (const Program* program : {&frame_, &preview_}) gl_.DeleteProgram(program->name);
+}
+
+FrameTexture::Program FrameTexture::make_program(const char* name, const char* fragment) const {
+    Program program;
+    program.name = link_program(gl_, name, embedded_file("shaders/frame.vert").data(),
+                                embedded_file(fragment).data());
+    const auto uniform = [&](const char* of) { return gl_.GetUniformLocation(program.name, of); };
+    program.picture = uniform("picture");
+    program.size = uniform("size");
+    program.coarse = uniform("coarse");
+    program.shares = uniform("shares");
+    program.coarse_size = uniform("coarse_size");
+    return program;
 }
 
 void FrameTexture::update(const ShownPicture& picture, const PictureChange& change) {
     if (!change.any()) return;
     size_ = picture.size;
+    take_pixels(picture, change);
+    take_coarse(picture, change);
+}
+
+void FrameTexture::take_pixels(const ShownPicture& picture, const PictureChange& change) {
     gl_.BindTexture(gl::texture_2d, texture_);
     gl_.PixelStorei(gl::unpack_row_length, size_.width);
     if (change.all)
@@ -42,6 +77,57 @@ void FrameTexture::update(const ShownPicture& picture, const PictureChange& chan
                           gl::rgba, gl::unsigned_byte, &picture.color[corner]);
     }
     gl_.PixelStorei(gl::unpack_row_length, 0);
+}
+
+void FrameTexture::take_coarse(const ShownPicture& picture, const PictureChange& change) {
+    if (!change.coarse && !change.all) return;
+    fine_ = picture.fine;
+    const bool is_new = change.replaced || change.all || shares_.size() != fine_.size();
+    if (picture.coarse.empty() || is_new)
+        shares_.assign(fine_.size(), picture.coarse.empty() ? 1.0f : 0.0f);
+    for (std::size_t tile = 0; tile < fine_.size(); ++tile)
+        if (fine_[tile] == 0) shares_[tile] = 0;
+    take_shares();
+    if (picture.coarse.empty() || !is_new) return;
+    coarse_size_ = picture.coarse.size;
+    gl_.BindTexture(gl::texture_2d, coarse_);
+    gl_.TexImage2D(gl::texture_2d, 0, gl::srgb8_alpha8, coarse_size_.width, coarse_size_.height, 0,
+                   gl::rgba, gl::unsigned_byte, picture.coarse.color.data());
+}
+
+// Counts them, and uploads them where they are needed.
+void FrameTexture::take_shares() {
+    hidden_ = fading_ = 0;
+    for (std::size_t tile = 0; tile < shares_.size(); ++tile) {
+        if (shares_[tile] >= 1) continue;
+        ++hidden_;
+        fading_ += fine_[tile] != 0;
+    }
+    if (hidden_ == 0) return;
+    const Squares& tiles = TileGrid(size_.width, size_.height).tiles;
+    std::vector<std::uint8_t> bytes(shares_.size());
+    // rises and ends slowly
+    std::transform(shares_.begin(), shares_.end(), bytes.begin(), [](float share) {
+        return static_cast<std::uint8_t>(255 * share * share * (3 - 2 * share) + 0.5f);
+    });
+    gl_.BindTexture(gl::texture_2d, share_texture_);
+    gl_.PixelStorei(gl::unpack_alignment, 1);
+    gl_.TexImage2D(gl::texture_2d, 0, gl::r8, tiles.across(), tiles.down(), 0, gl::red,
+                   gl::unsigned_byte, bytes.data());
+    gl_.PixelStorei(gl::unpack_alignment, 4);
+}
+
+void FrameTexture::fade(double seconds) {
+    if (!fading()) return;
+    for (std::size_t tile = 0; tile < shares_.size(); ++tile)
+        if (fine_[tile] != 0)
+            shares_[tile] = std::min(shares_[tile] + static_cast<float>(seconds) / fade_time, 1.0f);
+    take_shares();
+}
+
+void FrameTexture::bind(GlEnum unit, GlUint texture) const {
+    gl_.ActiveTexture(gl::texture0 + unit);
+    gl_.BindTexture(gl::texture_2d, texture);
 }
 
 void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer,
@@ -60,11 +146,19 @@ void FrameTexture::draw(const WindowRect& viewport, WindowSize framebuffer,
     const int top = viewport.y + (viewport.height - size_.height) / 2;
     gl_.Viewport(left, framebuffer.height - top - size_.height, size_.width, size_.height);
     gl_.Disable(gl::blend);
-    gl_.UseProgram(program_);
-    gl_.ActiveTexture(gl::texture0);
-    gl_.BindTexture(gl::texture_2d, texture_);
-    gl_.Uniform1i(picture_uniform_, 0);
-    gl_.Uniform2f(size_uniform_, static_cast<float>(size_.width), static_cast<float>(size_.height));
+    const Program& program = hidden_ > 0 ? preview_ : frame_;
+    gl_.UseProgram(program.name);
+    gl_.Uniform1i(program.picture, 0);
+    gl_.Uniform2f(program.size, static_cast<float>(size_.width), static_cast<float>(size_.height));
+    if (hidden_ > 0) {
+        bind(2, share_texture_);
+        bind(1, coarse_);
+        gl_.Uniform1i(program.coarse, 1);
+        gl_.Uniform1i(program.shares, 2);
+        gl_.Uniform2f(program.coarse_size, static_cast<float>(coarse_size_.width),
+                      static_cast<float>(coarse_size_.height));
+    }
+    bind(0, texture_);
     gl_.BindVertexArray(array_);
     gl_.DrawArrays(gl::triangle_strip, 0, 4);  // nothing, where there is no picture yet
     gl_.BindVertexArray(0);

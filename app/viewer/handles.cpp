@@ -66,11 +66,11 @@ bool cancels(const KeyPress& press) {
 }
 
 // The length of arrow to go by: nothing where the normal's own length serves.
-std::optional<double> arrow_of(const ViewerState& state, std::size_t element) {
-    const auto& kept = state.arrow;
+std::optional<double> arrow_of(const SeenScene& seen, std::size_t element) {
+    const auto& kept = seen.arrow;
     if (!kept || kept->element != element) return std::nullopt;
-    const HandView view{state.projection(), state.scale};
-    for (const Grip& grip : grips_of(view, state.document.scene().elements[element]))
+    const HandView view{seen.view, seen.scale};
+    for (const Grip& grip : grips_of(view, seen.scene.elements[element]))
         if (grip.kind == GripKind::direction && std::get<Vec3d>(grip.value) == kept->normal)
             return kept->length;
     return std::nullopt;
@@ -78,20 +78,28 @@ std::optional<double> arrow_of(const ViewerState& state, std::size_t element) {
 
 }  // namespace
 
-std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
+SeenScene as_it_stands(const ViewerState& state) {
+    return {
+        state.document.scene(), state.projection(), state.viewport, state.scale, state.arrow, true};
+}
+
+std::vector<Handle> handles_of(const SeenScene& seen, std::size_t element) {
     std::vector<Handle> handles;
-    const Scene& scene = state.document.scene();
-    if (element >= scene.elements.size()) return handles;
-    const HandView view{state.projection(), state.scale, arrow_of(state, element)};
-    for (Grip& grip : grips_of(view, scene.elements[element])) {
+    if (element >= seen.scene.elements.size()) return handles;
+    const HandView view{seen.view, seen.scale, arrow_of(seen, element)};
+    for (Grip& grip : grips_of(view, seen.scene.elements[element])) {
         const auto in_view = view.projection.project(grip.place);
         if (!in_view) continue;
-        const WindowPoint seen{in_view->x + state.viewport.x, in_view->y + state.viewport.y};
-        if (!state.viewport.contains(seen)) continue;
-        const WindowPoint at = free_place(handles, seen, state.viewport, state.scale);
-        handles.push_back({std::move(grip), element, at, seen});
+        const WindowPoint at{in_view->x + seen.rect.x, in_view->y + seen.rect.y};
+        if (!seen.rect.contains(at)) continue;
+        const WindowPoint free = free_place(handles, at, seen.rect, seen.scale);
+        handles.push_back({std::move(grip), element, free, at});
     }
     return handles;
+}
+
+std::vector<Handle> handles_of(const ViewerState& state, std::size_t element) {
+    return handles_of(as_it_stands(state), element);
 }
 
 void ViewportMouse::follow(ViewerState& state, const Input& input) {
@@ -187,7 +195,7 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     for (const Handle& handle : handles_of(state, grabbed_->element))
         if (handle.name == grabbed_->name) grabbed_ = handle;
     start_ = scene.elements[grabbed_->element];
-    arrow_ = arrow_of(state, grabbed_->element);
+    arrow_ = arrow_of(as_it_stands(state), grabbed_->element);
     if (grabbed_->kind == GripKind::direction && !arrow_) {
         const auto& n = std::get<Vec3d>(grabbed_->value);
         arrow_ = std::hypot(n.x, n.y, n.z);

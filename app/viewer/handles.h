@@ -25,9 +25,21 @@ struct Handle : Grip {
 // Pixels at scale 1 around a handle within which it can be grabbed; handles stand twice that apart.
 inline constexpr double grab_radius = 11;
 
-// The handles of one element that lie in the viewport. No two of them hide one another: where two
+// A scene as it is seen in a rectangle of the window: as it stands, or as of the picture that is shown.
+struct SeenScene {
+    const Scene& scene;
+    Projection view;
+    WindowRect rect;  // of view.size()
+    double scale;
+    const std::optional<KeptArrow>& arrow;
+    bool stands;  // it is the one that stands
+};
+[[nodiscard]] SeenScene as_it_stands(const ViewerState& state);
+
+// The handles of one element that lie in the rectangle, or in the viewport. No two of them hide one another: where two
 // would fall together (a circle's normal seen along itself) the later one is moved aside, to the
 // first free place of eight around it, beginning at the right and going down.
+[[nodiscard]] std::vector<Handle> handles_of(const SeenScene& seen, std::size_t element);
 [[nodiscard]] std::vector<Handle> handles_of(const ViewerState& state, std::size_t element);
 
 // The mouse in the viewport: orbit, pan, zoom, pick, hover, and a handle's drag with axis lock (X,

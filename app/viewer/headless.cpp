@@ -24,7 +24,6 @@ void run_headless(const HeadlessSettings& settings) {
     ViewerSettings viewer_settings;
     viewer_settings.threads = settings.threads;
     viewer_settings.wake = [&] { wake_up.wake(); };
-    viewer_settings.hold_back_coarse = false;
     Viewer viewer(*context, std::move(viewer_settings));
     viewer.state().stop = settings.stop;
     if (settings.scene) open_scene(viewer.state(), *settings.scene);

@@ -53,37 +53,38 @@ ImU32 line_color(const Element& element) {
 
 class Pen {
   public:
-    Pen(const ViewerState& state, ImDrawList& list)
+    Pen(const ViewerState& state, const SeenScene& seen, ImDrawList& list)
         : state_(state),
+          seen_(seen),
           list_(list),
-          view_(state.projection()),
           px_(static_cast<float>(state.scale)),
-          count_(state.document.scene().elements.size()) {}
+          count_(seen.scene.elements.size()) {}
 
     [[nodiscard]] float px(double pixels) const { return static_cast<float>(pixels) * px_; }
     // The width of a line, in whole pixels: ImGui draws such lines with half the corners.
     [[nodiscard]] float line_width(double pixels) const {
         return std::max(1.0f, std::round(px(pixels)));
     }
-    [[nodiscard]] const Projection& view() const { return view_; }
+    [[nodiscard]] const SeenScene& seen() const { return seen_; }
+    [[nodiscard]] const Projection& view() const { return seen_.view; }
 
     // In the window.
     [[nodiscard]] std::optional<WindowPoint> project(const Vec3d& place) const {
-        const auto seen = view_.project(place);
-        if (!seen) return std::nullopt;
-        return WindowPoint{seen->x + state_.viewport.x, seen->y + state_.viewport.y};
+        const auto at = view().project(place);
+        if (!at) return std::nullopt;
+        return WindowPoint{at->x + seen_.rect.x, at->y + seen_.rect.y};
     }
 
     // Behind the surface as the picture on the screen has it.
     [[nodiscard]] bool behind(const Vec3d& place) const {
-        const auto seen = view_.project(place);
+        const auto seen = view().project(place);
         if (!seen) return false;
         // of the way; of what an orthographic camera sees, which may be far away, and of a float
         const auto depth = static_cast<double>(state_.picture.depth_at(*seen));
-        const double slack = view_.is_orthographic()
-                                 ? 5e-4 * height_of(view_.camera()) + 0x1p-22 * depth
+        const double slack = view().is_orthographic()
+                                 ? 5e-4 * height_of(view().camera()) + 0x1p-22 * depth
                                  : 5e-4 * depth;
-        return view_.distance_to(place) > depth + slack;
+        return view().distance_to(place) > depth + slack;
     }
 
     void skeleton(const Element& element, bool selected) {
@@ -108,7 +109,7 @@ class Pen {
     void ring(const PictureLine& line, bool dashed) {
         points_.clear();
         for (const WindowPoint& p : line)
-            points_.push_back(vec({p.x + state_.viewport.x, p.y + state_.viewport.y}));
+            points_.push_back(vec({p.x + seen_.rect.x, p.y + seen_.rect.y}));
         if (!dashed) {
             closed_line(with_alpha(border_color, 0.5f), line_width(4));
             closed_line(with_alpha(selected_color, 0.85f), line_width(2));
@@ -190,8 +191,8 @@ class Pen {
     }
 
     const ViewerState& state_;
+    const SeenScene& seen_;
     ImDrawList& list_;
-    Projection view_;
     float px_;
     std::size_t count_;
     std::vector<ImVec2> run_, points_;  // of the line that is being drawn
@@ -216,13 +217,13 @@ double iso_widths(const Element& element, double threshold) {
 }
 
 void draw_skeletons(const ViewerState& state, Pen& pen) {
-    const Scene& scene = state.document.scene();
+    const Scene& scene = pen.seen().scene;
     const auto selected = state.document.selected();
     if (scene.elements.size() <= most_lines) {
         for (std::size_t i = 0; i < scene.elements.size(); ++i)
             if (scene.elements[i].visible && selected != i) pen.skeleton(scene.elements[i], false);
     }
-    if (!selected) return;
+    if (!selected || *selected >= scene.elements.size()) return;
     const Element& element = scene.elements[*selected];
     // Alone it is seen where F_i = T; one too weak for that, or carving, is hinted at by its width.
     const double widths = iso_widths(element, scene.threshold);
@@ -231,8 +232,7 @@ void draw_skeletons(const ViewerState& state, Pen& pen) {
     pen.skeleton(element, true);
 }
 
-void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle, bool hovered,
-                 bool held, ImDrawList& list) {
+void draw_handle(const Pen& pen, const Handle& handle, bool hovered, bool held, ImDrawList& list) {
     const ImVec2 at = vec(handle.at);
     const ImU32 fill = held || hovered ? selected_color : handle_color;
     const float radius = pen.px(held || hovered ? 7.5 : 5.5), border = pen.px(1.6);
@@ -257,7 +257,7 @@ void draw_handle(const ViewerState& state, const Pen& pen, const Handle& handle,
     }
     if (handle.kind == GripKind::place || handle.kind == GripKind::direction) {
         // its element's colour in the middle
-        const Rgba8 c = to_srgb(state.document.scene().elements[handle.element].color);
+        const Rgba8 c = to_srgb(pen.seen().scene.elements[handle.element].color);
         list.AddCircleFilled(at, 0.45f * radius, IM_COL32(c.r, c.g, c.b, 255));
     }
 }
@@ -301,8 +301,7 @@ std::string short_number(double value, double pixel) {
     return number_text(std::round(value * power) / power + 0.0);
 }
 
-std::string drag_label(const ViewportMouse& mouse, const Pen& pen) {
-    const Handle& handle = *mouse.grabbed();
+std::string drag_label(const ViewportMouse& mouse, const Handle& handle, const Pen& pen) {
     const double pixel = pen.view().length_of_pixel(handle.place);
     if (const auto* length = std::get_if<double>(&handle.value))
         return handle.part + " " + short_number(*length, pixel);
@@ -340,32 +339,45 @@ void draw_label(const ViewerState& state, const Pen& pen, const std::string& tex
 
 }  // namespace
 
-void draw_overlay(const ViewerState& state, const ViewportMouse& mouse, ImDrawList& list) {
-    Pen pen(state, list);
+std::optional<Handle> held_handle(const SeenScene& seen, const Handle& grabbed) {
+    if (seen.stands) return grabbed;
+    for (Handle& handle : handles_of(seen, grabbed.element)) {
+        if (handle.name != grabbed.name) continue;
+        handle.at = handle.seen;
+        return std::move(handle);
+    }
+    return std::nullopt;
+}
+
+void draw_overlay(const ViewerState& state, const SeenScene& seen, const ViewportMouse& mouse,
+                  ImDrawList& list) {
+    Pen pen(state, seen, list);
     draw_skeletons(state, pen);
     const auto selected = state.document.selected();
     if (!selected) return;
 
     if (!mouse.grabbed()) {
-        const std::vector<Handle> handles = handles_of(state, *selected);
+        const std::vector<Handle> handles = handles_of(seen, *selected);
         draw_arms(pen, handles, list);
         for (const Handle& handle : handles) {
             const bool hovered = mouse.hovered() && mouse.hovered()->name == handle.name;
-            draw_handle(state, pen, handle, hovered, false, list);
+            draw_handle(pen, handle, hovered, false, list);
         }
         return;
     }
-    const Handle& grabbed = *mouse.grabbed();
     if (mouse.locked_axis())
         draw_locked_axis(state, pen, mouse.grabbed_from(), *mouse.locked_axis(), list);
-    std::vector<Handle> handles = handles_of(state, grabbed.element);
+    const std::optional<Handle> grabbed = held_handle(seen, *mouse.grabbed());
+    if (!grabbed) return;
+    std::vector<Handle> handles = handles_of(seen, grabbed->element);
     for (Handle& handle : handles)
-        if (handle.name == grabbed.name) handle = grabbed;
+        if (handle.name == grabbed->name) handle = *grabbed;
     draw_arms(pen, handles, list);
     for (const Handle& handle : handles)
-        if (handle.name != grabbed.name) draw_handle(state, pen, handle, false, false, list);
-    draw_handle(state, pen, grabbed, false, true, list);
-    if (state.document.dragging()) draw_label(state, pen, drag_label(mouse, pen), grabbed.at, list);
+        if (handle.name != grabbed->name) draw_handle(pen, handle, false, false, list);
+    draw_handle(pen, *grabbed, false, true, list);
+    if (state.document.dragging())
+        draw_label(state, pen, drag_label(mouse, *grabbed, pen), grabbed->at, list);
 }
 
 }  // namespace ivory

@@ -3,23 +3,26 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "core/render/tiles.h"
 #include "core/trace/ray.h"
 
 namespace ivory {
 
-Readiness PictureBoard::readiness() const {
-    if (number == 0 || !blocks_.complete() || !fault.empty()) return Readiness::partial;
-    return blocks_.all_fine() ? Readiness::fine : Readiness::coarse;
-}
-
 void PictureBoard::begin(std::uint64_t new_number, const PictureRequest& new_request,
                          const std::vector<std::uint8_t>& missing, bool surface_empty) {
     number = new_number;
     request = new_request;
     if (laid_out_ != request.size) lay_out(request.size, missing.size());
-    blocks_.begin(missing);
+    missing_ = 0;
+    for (std::size_t tile = 0; tile < missing.size(); ++tile) {
+        is_here_[tile] = missing[tile] == 0;
+        missing_ += missing[tile] != 0;
+    }
+    seen_ = missing_ == 0 ? Seen::fine : Seen::nothing;
+    coarse_ = {};
+    fine_changed_ = true;
     tally.begin();
     certainly_empty = surface_empty;
     final = false;
@@ -34,9 +37,16 @@ void PictureBoard::lay_out(WindowSize size, std::size_t tiles) {
     depth_.resize(pixels);
     changed_.clear();
     is_changed_.assign(tiles, 0);
-    is_covered_.assign(tiles, 0);
+    is_here_.assign(tiles, 0);
     tally.lay_out(tiles);
     laid_out_ = size;
+}
+
+void PictureBoard::fail(std::uint64_t new_number, const std::string& why) {
+    number = new_number;
+    seen_ = Seen::nothing;
+    final = false;
+    fault = why;
 }
 
 void PictureBoard::expect(const std::vector<std::uint8_t>& selected,
@@ -50,24 +60,20 @@ void PictureBoard::expect(const std::vector<std::uint8_t>& selected,
 std::uint64_t PictureBoard::take(const TileNotice& notice, const Canvas& canvas) {
     const TileState& tile = canvas.tiles[notice.tile];
     const PixelRect& rect = notice.rect;
-    const bool same = notice.same && is_covered_[notice.tile] == 0;
-    is_covered_[notice.tile] = 0;
-    if (!same && notice.stride == 1) {
+    // A job that was cancelled may have painted empty tiles and told nobody.
+    const std::size_t corner = canvas.frame.at(rect.x0, rect.y0);
+    if (!notice.same || color_[corner] != canvas.frame.color[corner]) {
         for (int j = rect.y0; j < rect.y1; ++j)
             take_row(canvas.frame, canvas.frame.at(rect.x0, j), rect.width(), tile.empty);
-    } else if (!same) {
-        take_blocks(notice, canvas.frame);
+        if (is_changed_[notice.tile] == 0) changed_.push_back(notice.tile);
+        is_changed_[notice.tile] |= tracing_ ? 3 : 1;
     }
-    const bool stands_for_others = notice.square > TileGrid::tile_side;
-    shows(notice.tile, stands_for_others ? notice.square : notice.stride, !same);
-    if (stands_for_others) spread(notice, canvas);
+    if (is_here_[notice.tile] == 0) {
+        is_here_[notice.tile] = 1;
+        if (--missing_ == 0 && seen_ == Seen::nothing) seen_ = Seen::fine;
+        fine_changed_ = fine_changed_ || seen_ == Seen::both;
+    }
     return tally.take(notice.tile, tile, tracing_);
-}
-
-void PictureBoard::take_pixel(const Frame& frame, std::size_t from, std::size_t to) {
-    color_[to] = frame.color[from];
-    depth_[to] = possibly_hit(frame.status[from]) ? static_cast<float>(midpoint(frame.t(from)))
-                                                  : std::numeric_limits<float>::infinity();
 }
 
 void PictureBoard::take_row(const Frame& frame, std::size_t first, int count, bool misses) {
@@ -80,44 +86,37 @@ void PictureBoard::take_row(const Frame& frame, std::size_t first, int count, bo
         if (possibly_hit(frame.status[p])) depth_[p] = static_cast<float>(midpoint(frame.t(p)));
 }
 
-// --- what is coarse: a pixel stands for those to its right and below that are not traced yet ---
-
-void PictureBoard::take_blocks(const TileNotice& notice, const Frame& frame) {
-    for (int j = notice.rect.y0; j < notice.rect.y1; ++j)
-        for (int i = notice.rect.x0; i < notice.rect.x1; ++i)
-            take_pixel(frame, frame.at(i - i % notice.stride, j - j % notice.stride),
-                       frame.at(i, j));
+void PictureBoard::take_coarse(CoarsePicture&& picture) {
+    coarse_ = std::move(picture);
+    coarse_is_handed_over_ = false;
+    seen_ = Seen::coarse;
+    fine_changed_ = true;
 }
 
-// The first pixel of the tile over the others of its square that have nothing finer.
-void PictureBoard::spread(const TileNotice& notice, const Canvas& canvas) {
-    const Squares& tiles = canvas.grid.tiles;
-    const std::size_t from = canvas.frame.at(notice.rect.x0, notice.rect.y0);
-    const int x0 = notice.rect.x0 - notice.rect.x0 % notice.square;
-    const int y0 = notice.rect.y0 - notice.rect.y0 % notice.square;
-    const PixelRect square{x0, y0, std::min(x0 + notice.square, canvas.frame.width),
-                           std::min(y0 + notice.square, canvas.frame.height)};
-    for_squares_in(tiles, square, [&](std::size_t tile) {
-        if (!blocks_.coarser(tile, notice.square)) return;
-        const PixelRect rect = tiles.rect(tile);
-        for (int j = rect.y0; j < rect.y1; ++j)
-            for (int i = rect.x0; i < rect.x1; ++i)
-                take_pixel(canvas.frame, from, canvas.frame.at(i, j));
-        is_covered_[tile] = 1;
-        shows(tile, notice.square);
-    });
-}
-
-void PictureBoard::shows(std::size_t tile, int pixels_a_side, bool differs) {
-    blocks_.set(tile, pixels_a_side);
-    if (!differs) return;
-    if (is_changed_[tile] == 0) changed_.push_back(tile);
-    is_changed_[tile] |= tracing_ ? 3 : 1;
+void PictureBoard::refine() {
+    seen_ = Seen::both;
+    fine_changed_ = true;
 }
 
 // --- to the window ---
 
+void PictureBoard::set_fine(std::vector<std::uint8_t>& fine) const {
+    if (seen_ == Seen::both)
+        fine = is_here_;
+    else
+        fine.assign(is_here_.size(), seen_ == Seen::fine);
+}
+
 void PictureBoard::hand_over(ShownPicture& shown, PictureChange& change) {
+    if (std::exchange(fine_changed_, false)) {
+        set_fine(shown.fine);
+        change.coarse = true;
+        if (seen_ == Seen::fine) {
+            shown.coarse = {};
+        } else if (!std::exchange(coarse_is_handed_over_, true)) {
+            shown.coarse = std::exchange(coarse_, {});
+        }
+    }
     if (shown.size != request.size) {
         shown.size = request.size;
         shown.color = color_;
@@ -153,6 +152,18 @@ bool PictureBoard::hand_over_tile(const PixelRect& rect, bool with_depth,
         if (with_depth) std::copy_n(&depth_[row], columns, &shown.depth[row]);
     }
     return differs;
+}
+
+ShownPicture PictureBoard::copy() const {
+    ShownPicture picture{request.size, {}, {}, {}, {}};
+    if (seen_ == Seen::fine) {
+        picture.color = color_;
+        picture.depth = depth_;
+    } else {
+        picture.coarse = coarse_;
+    }
+    picture.fine.assign(is_here_.size(), seen_ == Seen::fine);
+    return picture;
 }
 
 }  // namespace ivory

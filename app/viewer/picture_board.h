@@ -1,6 +1,6 @@
-// The board: the picture in the making, pixel by pixel, between the workers, who put finished tiles
-// on it, and the window, which takes what has changed. Every pixel shows something of one picture
-// once `readiness` says so: what is not traced yet shows its nearest pixel that is, as blocks.
+// The board: the picture in the making, between the workers, who put finished tiles on it, and the
+// window, which takes what may be seen of it: all of a picture or nothing, and tile by tile only what
+// takes the place of a coarse picture of the same scene and camera.
 #pragma once
 
 #include <chrono>
@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "app/platform/window_rect.h"
-#include "app/viewer/patience.h"
 #include "app/viewer/shown_picture.h"
-#include "app/viewer/tile_blocks.h"
 #include "app/viewer/tile_tally.h"
 #include "core/render/canvas.h"
 #include "core/render/frame.h"
@@ -32,41 +30,58 @@ class PictureBoard {
     std::chrono::steady_clock::time_point ended;
     std::string fault;
 
-    [[nodiscard]] Readiness readiness() const;
+    // There is a picture of the request to be shown.
+    [[nodiscard]] bool showable() const { return seen_ != Seen::nothing; }
     [[nodiscard]] std::size_t pixels() const { return color_.size(); }
-    [[nodiscard]] std::size_t tiles() const { return blocks_.size(); }
+    [[nodiscard]] std::size_t tiles() const { return is_here_.size(); }
     [[nodiscard]] bool tracing() const { return tracing_; }
 
     // Another picture. It has nothing yet of the tiles in `missing`; the others stand as they are.
     void begin(std::uint64_t new_number, const PictureRequest& new_request,
                const std::vector<std::uint8_t>& missing, bool surface_empty);
+    // There is no picture of that request, and that is why.
+    void fail(std::uint64_t new_number, const std::string& why);
     // A job begins that makes these tiles anew; those of `kept` show what is not this picture's.
     void expect(const std::vector<std::uint8_t>& selected, const std::vector<std::uint8_t>& kept,
                 bool job_traces);
     // What a worker has made of a tile. How many more of its pixels are there now.
     std::uint64_t take(const TileNotice& notice, const Canvas& canvas);
+    // All of the picture in fewer pixels: it is what is seen.
+    void take_coarse(CoarsePicture&& picture);
+    // From now on the tiles that are there are seen in place of the coarse picture.
+    void refine();
 
-    // What has changed since it was last called, of a complete picture, goes to the screen.
+    // What has changed since it was last called goes to the screen; it is showable.
     void hand_over(ShownPicture& shown, PictureChange& change);
-    [[nodiscard]] ShownPicture copy() const { return {request.size, color_, depth_}; }
+    // What would be on the screen, though nothing of it has been handed over: every pixel, or the
+    // coarse picture alone.
+    [[nodiscard]] ShownPicture copy() const;
 
   private:
+    enum class Seen : std::uint8_t {
+        nothing,  // tiles are missing
+        fine,     // every tile
+        coarse,   // the coarse picture and no tile
+        both,     // the tiles that are there, the coarse picture elsewhere
+    };
+
     void lay_out(WindowSize size, std::size_t tiles);
-    void take_pixel(const Frame& frame, std::size_t from, std::size_t to);
     void take_row(const Frame& frame, std::size_t first, int count, bool misses);
-    void take_blocks(const TileNotice& notice, const Frame& frame);
-    void spread(const TileNotice& notice, const Canvas& canvas);
-    void shows(std::size_t tile, int pixels_a_side, bool differs = true);
     bool hand_over_tile(const PixelRect& rect, bool with_depth, ShownPicture& shown) const;
+    void set_fine(std::vector<std::uint8_t>& fine) const;
 
     WindowSize laid_out_;  // what all that follows is of
     std::vector<Rgba8> color_;
     std::vector<float> depth_;
-    TileBlocks blocks_;
+    std::vector<std::uint8_t> is_here_;     // by tile
+    std::size_t missing_ = 0;               // tiles
     std::vector<std::size_t> changed_;      // tiles since they were handed over, each once
     std::vector<std::uint8_t> is_changed_;  // by tile: 1: its colours, 3: its depth too
-    std::vector<std::uint8_t> is_covered_;  // by tile: with another one's pixels, now or before
     bool tracing_ = false;                  // false: only shaded anew
+    Seen seen_ = Seen::nothing;
+    CoarsePicture coarse_;  // as long as something of it is seen
+    bool coarse_is_handed_over_ = false;
+    bool fine_changed_ = false;  // the set of tiles that are seen fine, since it was handed over
 };
 
 }  // namespace ivory

@@ -13,11 +13,11 @@ RenderSession::~RenderSession() = default;
 
 void RenderSession::show(PictureRequest request) { director_->show(std::move(request)); }
 
-PictureChange RenderSession::poll(FirstPicture first) {
-    return director_->poll(first, shown_, state_, seconds_until_due_);
-}
+PictureChange RenderSession::poll() { return director_->poll(shown_, state_, shown_since_); }
 
-bool RenderSession::first_picture_ready() const { return director_->first_picture_ready(); }
+bool RenderSession::wait_until_showable(std::chrono::steady_clock::time_point time) const {
+    return director_->wait_until_showable(time);
+}
 
 SessionTotals RenderSession::totals() const { return director_->totals(); }
 

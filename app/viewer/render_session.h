@@ -2,16 +2,17 @@
 //
 //   show(request) -> director: compile, start a job -> workers: tiles -> board -> poll() -> shown()
 //
-// The picture shown is always all of one scene: a new one gathers on the board and replaces the old
-// one as blocks, coarse enough to come in time; then it is refined in place.
+// The picture shown is always all of one scene and camera, and while these change of one resolution:
+// as fine as can be made until the request's `due`. When they have not changed for a moment the final
+// picture takes the place of a coarse one tile by tile, from the pointer outwards.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 
 #include "app/panels/picture_state.h"
-#include "app/viewer/patience.h"
 #include "app/viewer/shown_picture.h"
 
 namespace ivory {
@@ -30,8 +31,7 @@ class RenderSession {
         double tolerance = 1e-6;  // E
         bool yields = false;  // its threads get a processor after others, where that is possible
         // Called by other threads when there is something to poll; must not throw. For refinement
-        // no more often than is worth a frame, for a first complete and for a final picture at
-        // once.
+        // no more often than is worth a frame, for a first and for a final picture at once.
         std::function<void()> wake;
     };
 
@@ -42,21 +42,23 @@ class RenderSession {
     RenderSession& operator=(const RenderSession&) = delete;
 
     // From now on this picture is wanted. Never waits. Refinement of the one before is cancelled at
-    // once (each worker ends after at most one tile more); its first complete picture may still be
-    // finished for a bounded time, or a drag over a heavy scene would show nothing.
+    // once (each worker ends after at most one tile more); its first picture still is finished, if
+    // that takes no more than twice the time that it was given, or someone who drags without a pause
+    // would see nothing.
     void show(PictureRequest request);
 
     // Takes over what is finished.
-    PictureChange poll(FirstPicture first);
+    PictureChange poll();
+
+    // Until the wanted picture can be shown, has a fault, or that time has come. Whether it is so.
+    [[nodiscard]] bool wait_until_showable(std::chrono::steady_clock::time_point time) const;
 
     [[nodiscard]] const ShownPicture& shown() const { return shown_; }
+    // When the edit was made of which that is the picture.
+    [[nodiscard]] std::chrono::steady_clock::time_point shown_since() const { return shown_since_; }
     // As of the last poll. Its `depth` is that of shown().
     [[nodiscard]] const PictureState& state() const { return state_; }
-    // So many seconds from the last poll a picture that was held back is due; < 0: none was.
-    [[nodiscard]] double seconds_until_due() const { return seconds_until_due_; }
 
-    // Whether the wanted scene has its first complete picture, shown or waiting for a poll.
-    [[nodiscard]] bool first_picture_ready() const;
     [[nodiscard]] SessionTotals totals() const;
 
   private:
@@ -64,7 +66,7 @@ class RenderSession {
 
     ShownPicture shown_;
     PictureState state_;
-    double seconds_until_due_ = -1;
+    std::chrono::steady_clock::time_point shown_since_;
     std::unique_ptr<Director> director_;
 };
 

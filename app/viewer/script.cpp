@@ -25,6 +25,7 @@ using nlohmann::json;
 
 constexpr int largest_side = 16384;  // pixels
 constexpr int most_frames = 100000;
+constexpr double fastest_pace = 1000;   // frames a second
 constexpr double farthest_pixel = 1e6;  // no window reaches there
 constexpr double most_wheel_turns = 1000;
 
@@ -237,16 +238,24 @@ step::Expect expect_of(const json& value, const json* within) {
     return expect;
 }
 
-constexpr std::array<std::string_view, 25> step_words = {
-    "wait",   "frames", "mouse", "move",   "press", "release", "double_click", "wheel", "hold",
-    "let",    "key",    "type",  "widget", "pick",  "select",  "grab",         "drag",  "drop",
-    "resize", "scale",  "theme", "expect", "save",  "state",   "screenshot",
+constexpr std::array<std::string_view, 26> step_words = {
+    "wait", "pace",   "frames", "mouse", "move",   "press", "release", "double_click", "wheel",
+    "hold", "let",    "key",    "type",  "widget", "pick",  "select",  "grab",         "drag",
+    "drop", "resize", "scale",  "theme", "expect", "save",  "state",   "screenshot",
 };
 
 step::Any step_of(const json& object, StepKeys& keys) {
     if (const json* value = keys.take("wait")) {
         if (*value != "final") refuse("wait has to be \"final\", not " + shown(*value));
         return step::WaitFinal{};
+    }
+    if (const json* value = keys.take("pace")) {
+        const double pace = number_of(*value, "pace");
+        if (!(pace == 0 || (pace >= 1 && pace <= fastest_pace)))
+            refuse("pace has to be 0, or from 1 to " +
+                   std::to_string(static_cast<int>(fastest_pace)) + " frames a second, not " +
+                   shown(*value));
+        return step::Pace{pace};
     }
     if (const json* value = keys.take("frames")) {
         if (!value->is_number_unsigned() || value->get<std::uint64_t>() > most_frames)

@@ -28,6 +28,9 @@ struct Chord {
 namespace step {
 
 struct WaitFinal {};
+struct Pace {
+    double per_second;  // frames and steps of input, of real time; 0: as fast as they can
+};
 struct Frames {
     int count;
 };
@@ -112,7 +115,7 @@ struct Screenshot {
     bool viewport;
 };
 
-using Any = std::variant<WaitFinal, Frames, Mouse, MouseTo, Move, Press, Release, DoubleClick,
+using Any = std::variant<WaitFinal, Pace, Frames, Mouse, MouseTo, Move, Press, Release, DoubleClick,
                          Wheel, Hold, Let, KeyStroke, Type, UseWidget, Pick, Select, Grab, Drag,
                          Drop, Resize, Scale, SetTheme, Expect, Save, WriteState, Screenshot>;
 

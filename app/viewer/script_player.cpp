@@ -9,12 +9,12 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "app/viewer/handles.h"
-#include "app/viewer/state_file.h"
 #include "core/render/image_file.h"
 #include "core/scene/error.h"
 #include "core/scene/read_file.h"
@@ -32,8 +32,9 @@ using nlohmann::json;
 constexpr double frame_seconds = 1.0 / 60;  // of the script's own time, whatever a frame takes
 constexpr int longest_wait = 60 * IVORY_PATIENCE;  // seconds for a final picture
 // A person waits for the surface to follow before moving on; no longer than that for a heavy scene.
-constexpr double patience = 2;          // seconds
-constexpr double between_looks = 0.05;  // seconds: whether somebody wants to stop
+constexpr double patience = 2 * IVORY_PATIENCE;  // seconds
+constexpr double budget_at_pace = 1.0 / 30;      // seconds, as in a window
+constexpr double between_looks = 0.05;           // seconds: whether somebody wants to stop
 constexpr int frames_to_settle = 3;
 constexpr int most_wheel_steps = 2000;
 
@@ -148,7 +149,9 @@ ScriptPlayer::ScriptPlayer(Viewer& viewer, MemoryContext& context, EventQueue& e
       context_(context),
       events_(events),
       wake_up_(wake_up),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)) {
+    viewer_.set_frame_budget(patience);
+}
 
 void ScriptPlayer::play(const Script& script) {
     settle();  // nothing is on the screen before the first frames
@@ -165,9 +168,25 @@ void ScriptPlayer::play(const Script& script) {
 void ScriptPlayer::turn() {
     do {
         stop_();
-        viewer_.frame(events_.next_frame(frame_seconds));
-        pause_for_picture();
+        viewer_.frame(events_.next_frame(wait_for_turn()));
     } while (!events_.empty());
+}
+
+// Until the next frame is to begin. Seconds since the last one did: of the script's own time, or at a
+// pace of real time.
+double ScriptPlayer::wait_for_turn() {
+    if (pace_ == 0) return frame_seconds;
+    const std::chrono::duration<double> between(1 / pace_);
+    const Clock::time_point due = turned_ + std::chrono::duration_cast<Clock::duration>(between);
+    std::this_thread::sleep_until(due);
+    const Clock::time_point now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(turned_, now)).count();
+}
+
+void ScriptPlayer::take(const step::Pace& step) {
+    pace_ = step.per_second;
+    turned_ = Clock::now();
+    viewer_.set_frame_budget(pace_ == 0 ? patience : budget_at_pace);
 }
 
 void ScriptPlayer::turn(Event event) {
@@ -181,14 +200,6 @@ void ScriptPlayer::turns(int count) {
 
 void ScriptPlayer::settle() { turns(frames_to_settle); }
 
-void ScriptPlayer::pause_for_picture() {
-    const Clock::time_point start = Clock::now();
-    while (viewer_.awaits_first_picture() && seconds_since(start) < patience) {
-        stop_();
-        wake_up_.wait(std::min(patience - seconds_since(start), between_looks));
-    }
-}
-
 void ScriptPlayer::wait_final() {
     const Clock::time_point start = Clock::now();
     for (turn(); !viewer_.final() || viewer_.next_frame_wanted() == 0; turn()) {
@@ -201,7 +212,9 @@ void ScriptPlayer::wait_final() {
             throw Error("the picture is not final after " + std::to_string(longest_wait) +
                         " seconds: " + std::to_string(static_cast<int>(100 * picture.progress)) +
                         " % of it is traced");
-        if (!viewer_.final()) wake_up_.wait(between_looks);
+        if (viewer_.final() || pace_ != 0) continue;
+        const double wanted = viewer_.next_frame_wanted();
+        wake_up_.wait(wanted < 0 ? between_looks : std::min(wanted, between_looks));
     }
 }
 
@@ -459,7 +472,7 @@ void ScriptPlayer::take(const step::SetTheme& step) {
 
 void ScriptPlayer::take(const step::Expect& step) {
     const json scene = whole_scene_json(viewer_.state());
-    const json state = state_json(viewer_, tiles_at_last_state_);
+    const json state = state_json(viewer_, at_last_state_);
     for (const auto& [where, expected] : step.expectations) {
         const json* is = find_value(scene, where);
         if (is == nullptr) is = find_value(state, where);
@@ -477,8 +490,8 @@ void ScriptPlayer::take(const step::Save& step) {
 }
 
 void ScriptPlayer::take(const step::WriteState& step) {
-    const json state = state_json(viewer_, tiles_at_last_state_);
-    tiles_at_last_state_ = viewer_.totals().tiles_traced;
+    const json state = state_json(viewer_, at_last_state_);
+    at_last_state_ = {viewer_.totals().tiles_traced, viewer_.frame_count()};
     write_file(step.file, state_text(state));
 }
 

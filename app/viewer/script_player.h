@@ -1,8 +1,10 @@
 // Plays a script on a viewer in memory, as a person would: every step goes through the input, one
-// change a frame.
+// change a frame. Without a pace a frame waits for the picture of its input, however long that takes
+// within reason, so that what it shows does not depend on time.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -12,6 +14,7 @@
 #include "app/platform/context.h"
 #include "app/platform/input.h"
 #include "app/viewer/script.h"
+#include "app/viewer/state_file.h"
 #include "app/viewer/viewer.h"
 
 namespace ivory {
@@ -48,7 +51,7 @@ class ScriptPlayer {
     void turn(Event event);
     void turns(int count);
     void settle();
-    void pause_for_picture();
+    double wait_for_turn();
     void move_to(WindowPoint at);
     void click();
     void stroke(const Chord& chord);
@@ -64,6 +67,7 @@ class ScriptPlayer {
     void enter_text(const std::string& text);
 
     void take(const step::WaitFinal&) { wait_final(); }
+    void take(const step::Pace& step);
     void take(const step::Frames& step) { turns(step.count); }
     void take(const step::Mouse& step) { move_to(step.at); }
     void take(const step::MouseTo& step);
@@ -95,7 +99,10 @@ class ScriptPlayer {
     EventQueue& events_;
     WakeUp& wake_up_;
     std::function<void()> stop_;
-    std::uint64_t tiles_at_last_state_ = 0;
+    // Frames and steps of input a second; 0: each as soon as the one before is done with.
+    double pace_ = 0;
+    std::chrono::steady_clock::time_point turned_;  // when the last frame began, at a pace
+    StateBefore at_last_state_;
 };
 
 }  // namespace ivory

@@ -1,6 +1,9 @@
 #include "app/viewer/state_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,9 +45,40 @@ json handles_json(const ViewerState& state, const std::vector<std::string>& name
     return all;
 }
 
+// Times and places to a thousandth.
+json rounded(double value) { return std::round(1000 * value) / 1000; }
+
+json rounded(const std::optional<double>& value) { return value ? rounded(*value) : json(nullptr); }
+
+json frames_json(const std::deque<FrameRecord>& frames, std::uint64_t count) {
+    const std::size_t first = frames.size() - std::min<std::uint64_t>(count, frames.size());
+    json lists = {{"at", json::array()},
+                  {"took", json::array()},
+                  {"drew", json::array()},
+                  {"asked", json::array()},
+                  {"age", json::array()},
+                  {"resolution", json::array()},
+                  {"fine", json::array()},
+                  {"handle_to_surface", json::array()},
+                  {"handle_to_hand", json::array()}};
+    for (std::size_t i = first; i < frames.size(); ++i) {
+        const FrameRecord& frame = frames[i];
+        lists["at"].push_back(rounded(frame.at));
+        lists["took"].push_back(rounded(frame.took));
+        lists["drew"].push_back(rounded(frame.drew));
+        lists["asked"].push_back(frame.asked);
+        lists["age"].push_back(rounded(frame.age));
+        lists["resolution"].push_back(frame.resolution);
+        lists["fine"].push_back(rounded(frame.fine));
+        lists["handle_to_surface"].push_back(rounded(frame.handle_to_surface));
+        lists["handle_to_hand"].push_back(rounded(frame.handle_to_hand));
+    }
+    return lists;
+}
+
 }  // namespace
 
-json state_json(Viewer& viewer, std::uint64_t tiles_before) {
+json state_json(Viewer& viewer, const StateBefore& before) {
     const ViewerState& state = viewer.state();
     const Document& document = state.document;
     const std::vector<std::string> names = element_names(document.scene());
@@ -67,11 +101,12 @@ json state_json(Viewer& viewer, std::uint64_t tiles_before) {
         if (const auto part = widget.visible_part()) all["widgets"][id] = rectangle(*part);
     const TileGrid grid(state.viewport.width, state.viewport.height);
     all["tiles"] = {{"total", grid.tiles.size()},
-                    {"traced", viewer.totals().tiles_traced - tiles_before}};
+                    {"traced", viewer.totals().tiles_traced - before.tiles}};
     all["pixels"] = {
         {"hit", picture.hit}, {"miss", picture.miss}, {"unresolved", picture.unresolved}};
     all["final"] = viewer.final();
     all["milliseconds"] = {{"frames", viewer.times().frames}, {"edits", viewer.times().edits}};
+    all["frames"] = frames_json(viewer.frames(), viewer.frame_count() - before.frames);
     all["message"] = state.message.text;
     all["path"] = nullptr;
     if (document.path()) all["path"] = document.path()->string();

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,7 +40,8 @@ using Clock = std::chrono::steady_clock;
 
 // Popups and windows that fit their contents are right after so many frames.
 constexpr int settling_frames = 3;
-constexpr std::size_t times_kept = 256;
+constexpr std::size_t times_kept = 256, records_kept = 2048;
+constexpr double fade_interval = 1.0 / 60;  // seconds between the frames of tiles that fade in
 
 struct ImguiContext {
     ImguiContext() { ImGui::CreateContext(); }
@@ -54,11 +57,6 @@ void keep(std::vector<double>& times, double milliseconds) {
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-bool holds_a_button(const Input& input) {
-    return std::find(input.mouse_down.begin(), input.mouse_down.end(), true) !=
-           input.mouse_down.end();
 }
 
 // Since the frame before, beyond a pointer that moves.
@@ -96,7 +94,12 @@ struct Viewer::Parts {
     int frames_to_settle = settling_frames;
     std::array<bool, mouse_button_count> mouse_down{};  // in the frame before
     std::optional<Clock::time_point> edited;  // when the picture that is awaited was asked for
+    const Clock::time_point began = Clock::now();
     ViewerTimes times;
+    std::deque<FrameRecord> frames;
+    std::uint64_t frame_count = 0;
+    FrameRecord record;             // of the frame that is being made
+    bool first_shown = false;       // by that frame: another picture
     std::string fault_said;         // the picture's
     std::size_t glyphs_loaded = 0;  // of state.glyphs
 
@@ -111,22 +114,21 @@ struct Viewer::Parts {
         io.LogFilename = nullptr;
     }
 
-    // When the edit was made whose first picture has just come, if one has.
-    std::optional<Clock::time_point> take_picture(const Input& input) {
-        const bool hurry = holds_a_button(input) || something_happened(input);
-        const PictureChange change = session.poll(!settings.hold_back_coarse ? FirstPicture::any
-                                                  : hurry                    ? FirstPicture::fine
-                                                          : FirstPicture::settled);
+    // What is new of the picture.
+    void take_picture() {
+        const PictureChange change = session.poll();
         texture.update(session.shown(), change);
         if (change.any()) frames_to_settle = std::max(frames_to_settle, 1);
         state.picture = session.state();
-        if (fault_said != state.picture.fault) {
-            fault_said = state.picture.fault;
-            if (!fault_said.empty()) state.say_error(fault_said);
-        }
-        const Asked shown{state.picture.scene, state.picture.camera, state.picture.size};
-        if (!change.replaced || shown != asked) return std::nullopt;
-        return std::exchange(edited, std::nullopt);
+        state.picture.final = state.picture.final && !texture.fading();
+        first_shown = first_shown || change.replaced;
+        if (fault_said == state.picture.fault) return;
+        fault_said = state.picture.fault;
+        if (!fault_said.empty()) state.say_error(fault_said);
+    }
+
+    [[nodiscard]] bool shows_what_stands() const {
+        return asked == Asked{state.picture.scene, state.picture.camera, state.picture.size};
     }
 
     void set_style(const Input& input) {
@@ -161,7 +163,8 @@ struct Viewer::Parts {
         }
     }
 
-    void ask_for_picture(const Input& input, Clock::time_point start) {
+    // Whether another one than before is wanted.
+    bool ask_for_picture(const Input& input, Clock::time_point start) {
         Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
         // An edit that no picture shows is not waited for: the session goes on with the scene that
         // it has.
@@ -169,11 +172,94 @@ struct Viewer::Parts {
         if (!compared && asked.scene && same_picture(*asked.scene, *wanted.scene))
             same_as_asked = wanted.scene;
         if (wanted.scene == same_as_asked) wanted.scene = asked.scene;
-        if (wanted == asked) return;
+        if (wanted == asked) return false;
         asked = wanted;
         same_as_asked = nullptr;
         edited = start;
-        session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start});
+        session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start, due(start)});
+        return true;
+    }
+
+    // When the picture of a frame that began then has to be there, so that it can be drawn in time.
+    [[nodiscard]] Clock::time_point due(Clock::time_point start) const {
+        std::array<double, 5> last{};  // milliseconds
+        const std::size_t count = std::min(last.size(), frames.size());
+        for (std::size_t i = 0; i < count; ++i) last[i] = frames[frames.size() - 1 - i].drew;
+        std::sort(last.begin(), last.begin() + static_cast<std::ptrdiff_t>(count));
+        const double drawing = last[count / 2] / 1000;
+        const std::chrono::duration<double> left(
+            std::max(settings.frame_budget - drawing, settings.frame_budget / 2));
+        return start + std::chrono::duration_cast<Clock::duration>(left);
+    }
+
+    // Looks now and then whether somebody wants to stop.
+    void wait_for_picture(Clock::time_point until) {
+        constexpr std::chrono::milliseconds between_looks{50};
+        while (!session.wait_until_showable(std::min(until, Clock::now() + between_looks))) {
+            if (Clock::now() >= until) return;
+            if (state.stop) state.stop();
+        }
+    }
+
+    // What is drawn over the picture is of its moment; where there is none of what stands, and will be
+    // none, of what stands.
+    [[nodiscard]] SeenScene seen() const {
+        const PictureState& picture = state.picture;
+        if (picture.scene == nullptr || !picture.fault.empty() || shows_what_stands())
+            return as_it_stands(state);
+        return as_shown();
+    }
+
+    [[nodiscard]] SeenScene as_shown() const {
+        const PictureState& picture = state.picture;
+        const WindowRect& viewport = state.viewport;
+        const WindowRect rect{viewport.x + (viewport.width - picture.size.width) / 2,
+                              viewport.y + (viewport.height - picture.size.height) / 2,
+                              picture.size.width, picture.size.height};
+        return {*picture.scene, {picture.camera, picture.size}, rect, state.scale, state.arrow,
+                false};
+    }
+
+    void draw_over_picture() {
+        const SeenScene scene = seen();
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        const WindowRect& viewport = state.viewport;
+        list.PushClipRect(ImVec2(static_cast<float>(viewport.x), static_cast<float>(viewport.y)),
+                          ImVec2(static_cast<float>(viewport.x + viewport.width),
+                                 static_cast<float>(viewport.y + viewport.height)));
+        draw_overlay(state, scene, mouse, list);
+        list.PopClipRect();
+        record_handle(scene);
+    }
+
+    void record_handle(const SeenScene& scene) {
+        if (!mouse.grabbed() || state.picture.scene == nullptr) return;
+        const auto drawn = held_handle(scene, *mouse.grabbed());
+        const auto there = held_handle(as_shown(), *mouse.grabbed());
+        const auto away = [](WindowPoint a, WindowPoint b) {
+            return std::hypot(a.x - b.x, a.y - b.y);
+        };
+        if (drawn && there) record.handle_to_surface = away(drawn->seen, there->seen);
+        if (drawn) record.handle_to_hand = away(drawn->seen, mouse.grabbed()->seen);
+    }
+
+    // The frame that began then has been drawn.
+    void end_frame(Clock::time_point start, Clock::time_point pictured) {
+        record.took = milliseconds_since(start);
+        record.drew = milliseconds_since(pictured);
+        record.at = std::chrono::duration<double, std::milli>(start - began).count();
+        if (first_shown) record.age = milliseconds_since(session.shown_since());
+        record.resolution = state.picture.resolution;
+        record.fine = state.picture.fine;
+        keep(times.frames, record.took);
+        if (edited && first_shown && shows_what_stands())
+            keep(times.edits, milliseconds_since(*std::exchange(edited, std::nullopt)));
+        if (frames.size() == records_kept) frames.pop_front();
+        frames.push_back(record);
+        ++frame_count;
+        record = {};
+        first_shown = false;
+        if (frames_to_settle > 0) --frames_to_settle;
     }
 
     // Where the eyes are: at the pointer, or else at the selected element.
@@ -231,7 +317,8 @@ void Viewer::frame(const Input& input) {
     if (parts.minimised) return;
 
     age_message(state, input.elapsed);
-    const std::optional<Clock::time_point> edit_shown = parts.take_picture(input);
+    parts.texture.fade(input.elapsed);
+    parts.take_picture();
     if (something_happened(input) || state.window != input.size || state.scale != input.scale ||
         parts.mouse_down != input.mouse_down)
         parts.frames_to_settle = settling_frames;
@@ -249,40 +336,30 @@ void Viewer::frame(const Input& input) {
     draw_panels(state);
     parts.frame_automatic_view();
     parts.mouse.update(state, input);
-    parts.ask_for_picture(input, start);  // the renderer begins while this frame is drawn
-    if (!parts.overlay_hidden && state.skeleton_shown) {
-        ImDrawList& list = *ImGui::GetBackgroundDrawList();
-        const WindowRect& viewport = state.viewport;
-        list.PushClipRect(ImVec2(static_cast<float>(viewport.x), static_cast<float>(viewport.y)),
-                          ImVec2(static_cast<float>(viewport.x + viewport.width),
-                                 static_cast<float>(viewport.y + viewport.height)));
-        draw_overlay(state, parts.mouse, list);
-        list.PopClipRect();
+    parts.record.asked = parts.ask_for_picture(input, start);
+    if (parts.record.asked) {
+        parts.wait_for_picture(parts.due(start));
+        parts.take_picture();
     }
+    const Clock::time_point pictured = Clock::now();
+    if (!parts.overlay_hidden && state.skeleton_shown) parts.draw_over_picture();
     ImGui::Render();
     parts.draw(input);
     parts.fulfil_wishes(*this);
     parts.context.present();
-
-    keep(parts.times.frames, milliseconds_since(start));
-    if (edit_shown) keep(parts.times.edits, milliseconds_since(*edit_shown));
-    if (parts.frames_to_settle > 0) --parts.frames_to_settle;
+    parts.end_frame(start, pictured);
 }
+
+void Viewer::set_frame_budget(double seconds) { parts_->settings.frame_budget = seconds; }
 
 void Viewer::hide_overlay(bool hidden) { parts_->overlay_hidden = hidden; }
 
 double Viewer::next_frame_wanted() const {
     if (parts_->minimised) return -1;
     if (parts_->frames_to_settle > 0) return 0;
-    double soonest = -1;
-    for (const double seconds :
-         {ivory::next_frame_wanted(parts_->state), parts_->session.seconds_until_due()})
-        if (seconds >= 0 && (soonest < 0 || seconds < soonest)) soonest = seconds;
-    return soonest;
-}
-
-bool Viewer::awaits_first_picture() const {
-    return parts_->asked.scene != nullptr && !parts_->session.first_picture_ready();
+    const double wanted = ivory::next_frame_wanted(parts_->state);
+    if (!parts_->texture.fading()) return wanted;
+    return wanted < 0 ? fade_interval : std::min(wanted, fade_interval);
 }
 
 bool Viewer::final() const { return parts_->state.picture.final; }
@@ -294,6 +371,10 @@ const ViewportMouse& Viewer::mouse() const { return parts_->mouse; }
 SessionTotals Viewer::totals() const { return parts_->session.totals(); }
 
 const ViewerTimes& Viewer::times() const { return parts_->times; }
+
+const std::deque<FrameRecord>& Viewer::frames() const { return parts_->frames; }
+
+std::uint64_t Viewer::frame_count() const { return parts_->frame_count; }
 
 std::string Viewer::title() const {
     const Document& document = parts_->state.document;

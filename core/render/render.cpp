@@ -148,7 +148,7 @@ class FrameJob::Work {
             if (any) block_order_.push_back(block);
             if (wants_list) needed[regions().at(rect.x0, rect.y0)] = 1;
         }
-        if (settings_.order == Order::coarse_to_fine) begin_at_focus();
+        if (settings_.order != Order::plain) begin_at_focus();
 
         lists_.plan(needed);
         // The regions in the order in which the blocks will ask for them.

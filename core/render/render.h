@@ -23,7 +23,8 @@ enum class Task : std::uint8_t {
 };
 
 enum class Order : std::uint8_t {
-    plain,  // each tile once, all of its pixels
+    plain,       // each tile once, all of its pixels
+    from_focus,  // the same, the blocks around the focus first
     // One pixel for each 64 x 64, then 8 x 8, then all: none is traced twice. Where few tiles are
     // selected it begins with smaller squares, 8 x 8 at the least; what begins with 16 x 16 goes on
     // to all at once.
@@ -54,7 +55,7 @@ struct JobSettings {
     std::vector<std::uint32_t> recolored;
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;
-    // Coarse to fine, the pixel around which each pass begins; -1, -1: the middle.
+    // From the focus and coarse to fine, the pixel around which each pass begins; -1, -1: the middle.
     int focus_i = -1, focus_j = -1;
     // Called by the workers, several at a time, never twice at a time for one tile. It may read the
     // pixels of that tile that the notice names until it returns. Must not throw.

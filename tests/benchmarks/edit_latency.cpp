@@ -2,7 +2,7 @@
 // which decides what an edit leaves valid, without a window to draw in.
 //
 // Each kind of edit is made and taken back, over and over, from a final picture each time. first:
-// until a picture of the edited scene is complete, blocks or not; final: until it equals a full
+// until a picture of the edited scene is complete, of every pixel or fewer; final: until it equals a full
 // rendering. Medians, in milliseconds.
 #include <algorithm>
 #include <chrono>
@@ -103,14 +103,16 @@ struct Latency {
 Latency show(RenderSession& session, std::counting_semaphore<>& woken, const Scene& scene,
              const Camera& camera, const Options& options) {
     const std::uint64_t traced = session.totals().tiles_traced;
+    const Clock::time_point now = Clock::now();
     session.show({std::make_shared<const Scene>(scene),
                   camera,
                   {options.width, options.height},
                   {},
-                  Clock::now()});
+                  now,
+                  now + std::chrono::milliseconds(33)});
     do {
         woken.acquire();
-        session.poll(FirstPicture::any);
+        session.poll();
         if (!session.state().fault.empty()) throw Error(session.state().fault);
     } while (!session.state().final);
     return {session.state().first_milliseconds, session.state().milliseconds,

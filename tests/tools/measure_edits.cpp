@@ -163,7 +163,7 @@ class Bench {
             Canvas canvas(size_.width, size_.height, false);
             JobSettings job_settings;
             job_settings.threads = options_.threads;
-            job_settings.order = Order::coarse_to_fine;
+            job_settings.order = Order::from_focus;
             FrameJob job(picture, canvas, job_settings);
             const auto before = std::chrono::duration_cast<std::chrono::milliseconds>(
                 Milliseconds(random_.uniform(0, 80)));

@@ -60,7 +60,7 @@ class ViewerBench {
             draw_panels(state);
             scene_of_panels = state.document.scene_value();
             mouse.update(state, input);
-            draw_overlay(state, mouse, *ImGui::GetBackgroundDrawList());
+            draw_overlay(state, as_it_stands(state), mouse, *ImGui::GetBackgroundDrawList());
             ImGui::Render();
         } while (!events_.empty());
     }

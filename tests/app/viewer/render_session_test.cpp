@@ -14,8 +14,10 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "app/viewer/script_player.h"
@@ -95,8 +97,12 @@ class Session : public testing::Test {
     WakeUp wake_up;
     RenderSession session{{2, tolerance, false, [this] { wake_up.wake(); }}};
 
+    // How long a first picture may take: by default so long that it is one of every pixel.
+    std::chrono::milliseconds budget{60'000};
+
     void show(const SceneValue& scene, const Camera& c = camera(), WindowSize picture_size = size) {
-        session.show({scene, c, picture_size, std::nullopt, Clock::now()});
+        const Clock::time_point now = Clock::now();
+        session.show({scene, c, picture_size, std::nullopt, now, now + budget});
     }
     // False after a minute.
     bool wait_until(const std::function<bool()>& done) {
@@ -109,7 +115,7 @@ class Session : public testing::Test {
     }
     bool wait_final() {
         return wait_until([this] {
-            session.poll(FirstPicture::settled);
+            session.poll();
             return session.state().final;
         });
     }
@@ -128,13 +134,15 @@ class Session : public testing::Test {
         EXPECT_EQ(state.unresolved, count(Status::unresolved));
         EXPECT_EQ(state.progress, 1);
     }
+    // Whether the wanted picture can be shown now.
+    bool showable() { return session.wait_until_showable(Clock::now()); }
     bool wait_first() {
-        return wait_until([this] { return session.first_picture_ready(); });
+        return session.wait_until_showable(Clock::now() + std::chrono::minutes(1));
     }
 };
 
 TEST_F(Session, WithoutARequestThereIsNoPicture) {
-    EXPECT_FALSE(session.poll(FirstPicture::any).any());
+    EXPECT_FALSE(session.poll().any());
     EXPECT_EQ(session.state().scene, nullptr);
     EXPECT_FALSE(session.state().final);
 }
@@ -159,7 +167,7 @@ TEST_F(Session, DepthIsTheDistanceAndInfiniteOnAMiss) {
     show(std::make_shared<const Scene>(two_blobs()));
     ASSERT_TRUE(wait_final());
     std::uint64_t hits = 0;
-    for (const float depth : session.state().depth)
+    for (const float depth : session.state().depth.pixels)
         if (std::isfinite(depth)) {
             ++hits;
             EXPECT_GT(depth, 4);
@@ -175,7 +183,7 @@ TEST_F(Session, AnEditChangesOnlyWhatItSaysItChanged) {
     std::vector<Rgba8> mirror = session.shown().color;
     show(with_left_blob_at(-1.0));
     ASSERT_TRUE(wait_until([&] {
-        const PictureChange change = session.poll(FirstPicture::settled);
+        const PictureChange change = session.poll();
         EXPECT_FALSE(change.all);
         for (const PixelRect& rect : change.tiles)
             for (int j = rect.y0; j < rect.y1; ++j)
@@ -189,54 +197,144 @@ TEST_F(Session, AnEditChangesOnlyWhatItSaysItChanged) {
     EXPECT_EQ(mirror, rendered(*with_left_blob_at(-1.0), camera()));
 }
 
-// Whenever one looks, each pixel is the one of the scene that is said to be shown, or that of the
-// nearest pixels of a coarser grid: never another scene's, never black.
-TEST_F(Session, NoPictureIsAMixtureOfScenes) {
-    constexpr unsigned seed = 7;
-    std::mt19937 random(seed);
-    std::uniform_int_distribution<int> pause(0, 12);
-    std::map<SceneValue, std::vector<Rgba8>> finals;
-    std::vector<SceneValue> scenes;
-    for (int i = 0; i < 8; ++i) {
-        scenes.push_back(with_left_blob_at(-1.2 + 0.15 * i));
-        finals[scenes.back()] = rendered(*scenes.back(), camera());
+// What the shown picture is, to the byte but for what float may differ by where only touched tiles
+// were traced again.
+bool near(Rgba8 a, Rgba8 b) {
+    return std::abs(a.r - b.r) <= 1 && std::abs(a.g - b.g) <= 1 && std::abs(a.b - b.b) <= 1;
+}
+
+// Scenes and their pictures in full and of fewer pixels, rendered when they are first asked for.
+class Gallery {
+  public:
+    [[nodiscard]] const std::vector<Rgba8>& picture(const SceneValue& scene, WindowSize of) {
+        auto& known = pictures_[{scene, of.width, of.height}];
+        if (known.empty()) known = rendered(*scene, camera(), of);
+        return known;
     }
-    const auto near = [](Rgba8 a, Rgba8 b) {
-        return std::abs(a.r - b.r) <= 1 && std::abs(a.g - b.g) <= 1 && std::abs(a.b - b.b) <= 1;
-    };
-    const auto check = [&] {
-        const SceneValue scene = session.state().scene;
-        if (scene == nullptr) return;
-        const std::vector<Rgba8>& final = finals.at(scene);
-        for (int j = 0; j < size.height; ++j)
-            for (int i = 0; i < size.width; ++i) {
-                const Rgba8 is =
-                    session.shown().color[static_cast<std::size_t>(j * size.width + i)];
-                const auto is_pixel = [&](int x, int y) {
-                    return near(is, final[static_cast<std::size_t>(y * size.width + x)]);
-                };
-                bool known = false;
-                for (const int stride : {1, 2, 4, 8, 16})
-                    known = known || is_pixel(i - i % stride, j - j % stride);
-                // before a tile has a pixel of its own, another near by stands for it
-                for (int y = j - j % 64; y < std::min(j - j % 64 + 64, size.height); y += 16)
-                    for (int x = i - i % 64; x < std::min(i - i % 64 + 64, size.width); x += 16)
-                        known = known || is_pixel(x, y);
-                ASSERT_TRUE(known) << "seed " << seed << ", pixel " << i << ", " << j;
+
+  private:
+    std::map<std::tuple<SceneValue, int, int>, std::vector<Rgba8>> pictures_;
+};
+
+// Whenever one looks, whatever is in work and however little time there is: every pixel that is seen is
+// that of the scene that is said to be shown, all of them in one resolution; only when nothing has
+// changed for a while fine tiles come to a coarse picture. `seen` collects the resolutions.
+void expect_even(const RenderSession& session, Gallery& gallery, bool moving,
+                 std::set<double>& seen) {
+    const ShownPicture& shown = session.shown();
+    const SceneValue scene = session.state().scene;
+    if (scene == nullptr) return;
+    ASSERT_EQ(shown.size, size);
+    const Squares tiles = TileGrid(size.width, size.height).tiles;
+    ASSERT_EQ(shown.fine.size(), tiles.size());
+    const auto fine = std::count(shown.fine.begin(), shown.fine.end(), 1);
+    const bool all_fine = fine == std::ssize(shown.fine);
+    if (moving) {
+        EXPECT_TRUE(fine == 0 || all_fine) << fine;
+    }
+    seen.insert(session.state().resolution);
+    EXPECT_EQ(session.state().resolution == 1, all_fine);
+    if (!all_fine) {
+        ASSERT_EQ(shown.coarse.size, coarse_size(size, shown.coarse.step));
+        EXPECT_EQ(shown.coarse.step, session.state().resolution);
+        EXPECT_EQ(shown.coarse.color, gallery.picture(scene, shown.coarse.size));
+    }
+    const std::vector<Rgba8>& full = gallery.picture(scene, size);
+    for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+        if (shown.fine[tile] == 0) continue;
+        const PixelRect rect = tiles.rect(tile);
+        for (int j = rect.y0; j < rect.y1; ++j)
+            for (int i = rect.x0; i < rect.x1; ++i) {
+                const auto p = static_cast<std::size_t>(j * size.width + i);
+                ASSERT_TRUE(near(shown.color[p], full[p])) << "pixel " << i << ", " << j;
             }
-    };
-    for (int edit = 0; edit < 40; ++edit) {
+    }
+}
+
+TEST_F(Session, NoPictureMixesScenesOrResolutions) {
+    std::mt19937 random(tools::announced_seed(7));
+    std::uniform_int_distribution<int> pause(0, 12);
+    Gallery gallery;
+    std::vector<SceneValue> scenes;
+    for (int i = 0; i < 8; ++i) scenes.push_back(with_left_blob_at(-1.2 + 0.15 * i));
+    std::set<double> seen;
+    for (int edit = 0; edit < 60; ++edit) {
+        // none at all, so that all but the coarsest are late, and enough for every pixel
+        budget = std::chrono::milliseconds(edit % 3 == 0 ? 0 : edit % 20);
         show(scenes[random() % scenes.size()]);
         for (int look = 0; look < 3; ++look) {
             std::this_thread::sleep_for(std::chrono::milliseconds(pause(random)));
-            session.poll(static_cast<FirstPicture>(look));
-            check();
+            session.poll();
+            expect_even(session, gallery, true, seen);
             if (HasFatalFailure()) return;
         }
     }
+    EXPECT_GE(seen.size(), 2u);
     show(scenes[3]);
-    ASSERT_TRUE(wait_final());
-    EXPECT_EQ(session.shown().color, finals.at(scenes[3]));
+    ASSERT_TRUE(wait_until([&] {
+        session.poll();
+        expect_even(session, gallery, false, seen);
+        return session.state().final || HasFatalFailure();
+    }));
+    EXPECT_EQ(session.shown().color, gallery.picture(scenes[3], size));
+}
+
+// A picture of fewer pixels stands for itself until the hand rests; then tiles of the final picture come
+// one after the other, and what was traced before them is not lost.
+TEST_F(Session, ACoarsePictureIsRefinedTileByTileWhenTheHandRests) {
+    budget = std::chrono::milliseconds(0);
+    const SceneValue scene = with_left_blob_at(-1.2);
+    constexpr WindowSize large{1400, 1000};
+    show(scene, camera(), large);
+    ASSERT_TRUE(wait_first());
+    session.poll();
+    const CoarsePicture coarse = session.shown().coarse;
+    EXPECT_EQ(coarse.size, coarse_size(large, coarse.step));
+    EXPECT_EQ(coarse.color, rendered(*scene, camera(), coarse.size));
+    EXPECT_EQ(session.state().fine, 0);
+    double before = 0;
+    ASSERT_TRUE(wait_until([&] {
+        const PictureChange change = session.poll();
+        EXPECT_FALSE(change.replaced || change.all);
+        EXPECT_GE(session.state().fine, before);
+        before = session.state().fine;
+        EXPECT_EQ(session.shown().coarse.color, coarse.color);
+        return session.state().final;
+    }));
+    EXPECT_EQ(before, 1);
+    expect_as_render(*scene, camera(), large);
+    EXPECT_EQ(session.state().tiles, session.state().tiles_traced);
+}
+
+// Colours, too, may come as a coarse picture; and edits of all kinds that are cut short while they are.
+TEST_F(Session, CoarsePicturesOfEditsThatOvertakeEachOtherEndAsRender) {
+    std::mt19937 random(tools::announced_seed(43));
+    Scene scene = two_blobs();
+    for (int round = 0; round < 5; ++round) {
+        for (int edit = 0; edit < 8; ++edit) {
+            budget = std::chrono::milliseconds(random() % 3);
+            const double share = static_cast<double>(random() % 100) / 100;
+            switch (random() % 4) {
+                case 0:
+                    scene.elements[0].color = {share, 0.3, 1 - share};
+                    break;
+                case 1:
+                    scene.threshold = 0.3 + 0.2 * share;
+                    break;
+                case 2:
+                    scene.background = {share, 0.1, 0.1};
+                    break;
+                default:
+                    std::get<PointSkeleton>(scene.elements[1].skeleton).position.y = share - 0.5;
+            }
+            show(std::make_shared<const Scene>(scene));
+            std::this_thread::sleep_for(std::chrono::milliseconds(random() % 200));
+            session.poll();
+        }
+        ASSERT_TRUE(wait_final());
+        SCOPED_TRACE("round " + std::to_string(round));
+        expect_as_render(scene, camera());
+    }
 }
 
 TEST_F(Session, TheOldPictureStaysUntilTheNewOneIsComplete) {
@@ -245,10 +343,11 @@ TEST_F(Session, TheOldPictureStaysUntilTheNewOneIsComplete) {
     ASSERT_TRUE(wait_final());
     const std::vector<Rgba8> before = session.shown().color;
     show(second);
-    while (!session.first_picture_ready()) {
-        session.poll(FirstPicture::any);
+    while (!showable()) {
+        session.poll();
         if (session.state().scene != first) break;
         ASSERT_EQ(session.shown().color, before);
+        ASSERT_EQ(session.state().fine, 1);
     }
     ASSERT_TRUE(wait_final());
     EXPECT_EQ(session.state().scene, second);
@@ -265,7 +364,7 @@ TEST_F(Session, ACompletePictureIsShownThoughTheNextHasBegun) {
         ASSERT_TRUE(wait_first());
         show(next);
         std::this_thread::sleep_for(std::chrono::milliseconds(i));
-        EXPECT_TRUE(session.poll(FirstPicture::any).replaced);
+        EXPECT_TRUE(session.poll().replaced);
         const SceneValue shown = session.state().scene;
         EXPECT_TRUE(shown == overtaken || shown == next);
     }
@@ -274,8 +373,9 @@ TEST_F(Session, ACompletePictureIsShownThoughTheNextHasBegun) {
 TEST_F(Session, AnEditCancelsRefinement) {
     // so large that it is far from done when its first picture is
     constexpr WindowSize large{3000, 2400};
+    budget = std::chrono::milliseconds(0);
     show(with_left_blob_at(-1.2), camera(), large);
-    ASSERT_TRUE(wait_first());
+    ASSERT_TRUE(wait_until([&] { return session.totals().tiles_traced > 0; }));
     Camera other = camera();
     other.position.y += 0.1;
     show(with_left_blob_at(-1.2), other, size);
@@ -341,7 +441,7 @@ TEST_F(Session, EditsThatOvertakeEachOtherEndAsRender) {
             }
             show(std::make_shared<const Scene>(scene), camera(), large);
             std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
-            session.poll(FirstPicture::any);
+            session.poll();
         }
         ASSERT_TRUE(wait_final());
         SCOPED_TRACE("round " + std::to_string(round));
@@ -367,7 +467,7 @@ TEST_F(Session, TilesLeftForLaterAreTracedThoughColoursComeBetween) {
         show(std::make_shared<const Scene>(scene), camera(), large);
         const std::uint64_t by_the_move = session.totals().tiles_traced;
         ASSERT_TRUE(wait_until([&] {
-            session.poll(FirstPicture::settled);
+            session.poll();
             return session.state().final || session.totals().tiles_traced >= by_the_move + late;
         }));
         scene.elements[1].color.y = 0.5 + 0.001 * static_cast<double>(late);
@@ -416,7 +516,7 @@ TEST_F(Session, ADragEndsExactlyWhereverItWent) {
         show(with_left_blob_at(-1.2 + 0.1 * i));
         if (i % 5 != 0) continue;
         ASSERT_TRUE(wait_first());
-        session.poll(FirstPicture::any);
+        session.poll();
     }
     show(with_left_blob_at(-1.2));
     ASSERT_TRUE(wait_final());
@@ -501,7 +601,7 @@ TEST_F(Session, AnotherSizeReplacesThePictureAsAWhole) {
         show(scene, camera(), other);
         bool replaced = false;
         ASSERT_TRUE(wait_until([&] {
-            const PictureChange change = session.poll(FirstPicture::settled);
+            const PictureChange change = session.poll();
             replaced = replaced || change.all;
             return session.state().final;
         }));
@@ -529,7 +629,7 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     broken.target = broken.position;
     show(scene, broken);
     ASSERT_TRUE(wait_until([&] {
-        session.poll(FirstPicture::settled);
+        session.poll();
         return !session.state().fault.empty();
     }));
     EXPECT_EQ(session.shown().color, rendered(*scene, camera()));  // the old picture
@@ -537,7 +637,7 @@ TEST_F(Session, ACameraWithoutADirectionIsAFaultAndTheNextRequestWorks) {
     EXPECT_FALSE(session.state().final);
     show(scene, broken, {50, 300});
     ASSERT_TRUE(wait_first());
-    EXPECT_FALSE(session.poll(FirstPicture::any).any());
+    EXPECT_FALSE(session.poll().any());
     show(scene, camera(), {50, 300});
     ASSERT_TRUE(wait_final());
     expect_as_render(*scene, camera(), {50, 300});
@@ -563,12 +663,14 @@ TEST(RenderSessionLife, EndsWhileItWorks) {
         std::atomic<int> wakes = 0;
         {
             RenderSession session({2, tolerance, i % 2 == 0, [&] { ++wakes; }});
-            session.show({with_left_blob_at(-1.2), camera(), large, std::nullopt, Clock::now()});
+            const Clock::time_point now = Clock::now();
+            session.show({with_left_blob_at(-1.2), camera(), large, std::nullopt, now,
+                          now + std::chrono::milliseconds(33)});
             std::this_thread::sleep_for(std::chrono::milliseconds(i % 5));
             if (i % 4 == 0) {
                 while (session.totals().tiles_traced == 0) std::this_thread::yield();
             }
-            session.poll(FirstPicture::any);
+            session.poll();
             EXPECT_FALSE(session.state().final);
             EXPECT_GT(threads_of_this_process(), threads);
             at_work += session.totals().begun == 1;

@@ -58,7 +58,6 @@ class Driven {
         ViewerSettings settings;
         settings.threads = 2;
         settings.wake = [&wake_up] { wake_up.wake(); };
-        settings.hold_back_coarse = false;
         return settings;
     }
 
@@ -270,7 +269,7 @@ TEST_P(InMemory, TheStateTellsWhatTheContractAsksFor) {
     Driven driven(*context, {900, 600});
     driven.play(R"({"wait": "final"}
                    {"select": "point 2"})");
-    const json state = json::parse(state_text(state_json(driven.viewer(), 0)));
+    const json state = json::parse(state_text(state_json(driven.viewer(), {})));
     const WindowRect viewport = driven.state().viewport;
     EXPECT_EQ(state["viewport"], json({viewport.x, viewport.y, viewport.width, viewport.height}));
     EXPECT_EQ(state["selection"], "point 2");
@@ -395,11 +394,11 @@ TEST_P(FrameTextures, PixelForPixelAndOnlyWhatChanged) {
     const auto context = context_or_skip({90, 70});
     if (!context) return;
     FrameTexture texture(context->gl());
-    ShownPicture picture{{50, 40}, std::vector<Rgba8>(50 * 40), {}};
+    ShownPicture picture{{50, 40}, std::vector<Rgba8>(50 * 40), {}, {}, {}};
     for (std::size_t p = 0; p < picture.color.size(); ++p)
         picture.color[p] = {static_cast<std::uint8_t>(p), static_cast<std::uint8_t>(p * 7),
                             static_cast<std::uint8_t>(p / 50), 255};
-    texture.update(picture, {.replaced = true, .all = true, .tiles = {}});
+    texture.update(picture, {.replaced = true, .all = true, .coarse = false, .tiles = {}});
     const WindowRect viewport{11, 9, 50, 40};
     EXPECT_EQ(drawn(*context, texture, viewport), picture.color);
 
@@ -410,7 +409,7 @@ TEST_P(FrameTextures, PixelForPixelAndOnlyWhatChanged) {
         for (int j = tile.y0; j < tile.y1; ++j)
             for (int i = tile.x0; i < tile.x1; ++i)
                 expected[static_cast<std::size_t>(j * 50 + i)] = {200, 100, 50, 255};
-    texture.update(picture, {.replaced = false, .all = false, .tiles = tiles});
+    texture.update(picture, {.replaced = false, .all = false, .coarse = false, .tiles = tiles});
     EXPECT_EQ(drawn(*context, texture, viewport), expected);
 }
 
@@ -418,10 +417,10 @@ TEST_P(FrameTextures, AnotherSizeThanTheViewportStandsInItsMiddle) {
     const auto context = context_or_skip({90, 70});
     if (!context) return;
     FrameTexture texture(context->gl());
-    const ShownPicture picture{{20, 10}, std::vector<Rgba8>(200, Rgba8{9, 8, 7, 255}), {}};
+    const ShownPicture picture{{20, 10}, std::vector<Rgba8>(200, Rgba8{9, 8, 7, 255}), {}, {}, {}};
     const WindowRect viewport{5, 5, 30, 20};
     EXPECT_EQ(drawn(*context, texture, viewport), std::vector<Rgba8>(600, Rgba8{1, 2, 3, 255}));
-    texture.update(picture, {.replaced = true, .all = true, .tiles = {}});
+    texture.update(picture, {.replaced = true, .all = true, .coarse = false, .tiles = {}});
     const std::vector<Rgba8> colors = drawn(*context, texture, viewport);
     for (int j = 0; j < 20; ++j)
         for (int i = 0; i < 30; ++i) {
