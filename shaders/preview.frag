@@ -1,6 +1,6 @@
 #version 330 core
-// A picture of fewer pixels, made smooth, and over it the tiles of the final one that are there, each by
-// its share.
+// A picture of fewer pixels, filtered, and over it the tiles of the final one that are there, each by its
+// share.
 uniform sampler2D picture;  // pixel for pixel, as frame.frag has it
 uniform sampler2D coarse;   // sRGB, so that its texels are mixed as light
 uniform sampler2D shares;   // one texel for each tile of 16 x 16 pixels: how much of it is seen

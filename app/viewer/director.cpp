@@ -35,7 +35,7 @@ void yield_to_other_threads() {
 // Between the frames that show refinement: more would only take time from the tracer.
 constexpr std::chrono::milliseconds refinement_interval{30};
 // After the last edit, before a hand rests: fine tiles that come earlier would only flicker.
-constexpr std::chrono::milliseconds rest{120};
+constexpr std::chrono::milliseconds rest{100};
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
@@ -85,6 +85,12 @@ void RenderSession::Director::show(PictureRequest request) {
     wanted_ = std::move(request);
     ++wanted_number_;
     if (job_ != nullptr && job_yields_) job_->cancel();
+    condition_.notify_all();
+}
+
+void RenderSession::Director::stays() {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(stays_wanted_, true)) return;
     condition_.notify_all();
 }
 
@@ -307,15 +313,23 @@ bool RenderSession::Director::coarse_picture(const PictureRequest& request, doub
     return true;
 }
 
-// False: something else is wanted before.
+// False: something else is wanted before. Where frames take long the hand may have moved on though
+// nothing has come of it yet: the window has to have looked for input since.
 bool RenderSession::Director::hand_rests(std::uint64_t number, const PictureRequest& request) {
     std::unique_lock lock(mutex_);
-    // As long as the picture has not been seen, nobody can have moved on.
+    const auto is_over = [this] { return stop_ || wanted_; };
     const auto rests_at = [&] {
         return std::max(request.since, shown_number_ == number ? shown_at_ : request.since) + rest;
     };
-    while (!stop_ && !wanted_ && Clock::now() < rests_at()) condition_.wait_until(lock, rests_at());
-    rested_ = !stop_ && !wanted_;
+    while (!is_over() && Clock::now() < rests_at()) condition_.wait_until(lock, rests_at());
+    if (!is_over()) {
+        stays_wanted_ = false;
+        lock.unlock();
+        settings_.wake();
+        lock.lock();
+        condition_.wait(lock, [&] { return is_over() || stays_wanted_; });
+    }
+    rested_ = !is_over();
     return rested_;
 }
 
@@ -330,12 +344,15 @@ bool RenderSession::Director::refine(const PictureRequest& request) {
         board_.refine();
     }
     settings_.wake();
+    const Time start = Clock::now();
     const bool complete = run_on_canvas(work, Order::from_focus, request, {.yields = true});
+    const Time end = Clock::now();
     {
         const std::lock_guard lock(mutex_);
-        board_.ended = Clock::now();
+        board_.ended = end;
     }
     finish_tiles(work, complete);
+    if (complete) resolution_.learn(0, fine_work(work), seconds_between(start, end));
     return complete;
 }
 

@@ -45,6 +45,7 @@ class RenderSession::Director {
 
     // As those of RenderSession.
     void show(PictureRequest request);
+    void stays();
     PictureChange poll(ShownPicture& shown, PictureState& state, Time& shown_since);
     [[nodiscard]] bool wait_until_showable(Time time) const;
     [[nodiscard]] SessionTotals totals() const;
@@ -106,8 +107,9 @@ class RenderSession::Director {
     std::uint64_t shown_number_ = 0;
     std::shared_ptr<const Scene> shown_scene_;
     Camera shown_camera_;
-    Time shown_since_;  // when it was asked for
-    Time shown_at_;     // when it was first polled
+    Time shown_since_;           // when it was asked for
+    Time shown_at_;              // when it was first polled
+    bool stays_wanted_ = false;  // what is in work, as the window has said since it seemed to
 
     // The director's thread alone, and what a job's notices let the workers read.
     EditedCanvas canvas_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/platform/embedded.h"
+#include "app/viewer/smoothing.h"
 
 namespace ivory {
 
@@ -89,10 +90,11 @@ void FrameTexture::take_coarse(const ShownPicture& picture, const PictureChange&
         if (fine_[tile] == 0) shares_[tile] = 0;
     take_shares();
     if (picture.coarse.empty() || !is_new) return;
-    coarse_size_ = picture.coarse.size;
+    const SmoothPicture smooth = smoothed(picture.coarse);
+    coarse_size_ = smooth.size;
     gl_.BindTexture(gl::texture_2d, coarse_);
     gl_.TexImage2D(gl::texture_2d, 0, gl::srgb8_alpha8, coarse_size_.width, coarse_size_.height, 0,
-                   gl::rgba, gl::unsigned_byte, picture.coarse.color.data());
+                   gl::rgba, gl::unsigned_byte, smooth.color.data());
 }
 
 // Counts them, and uploads them where they are needed.

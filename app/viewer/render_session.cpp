@@ -13,6 +13,8 @@ RenderSession::~RenderSession() = default;
 
 void RenderSession::show(PictureRequest request) { director_->show(std::move(request)); }
 
+void RenderSession::stays() { director_->stays(); }
+
 PictureChange RenderSession::poll() { return director_->poll(shown_, state_, shown_since_); }
 
 bool RenderSession::wait_until_showable(std::chrono::steady_clock::time_point time) const {

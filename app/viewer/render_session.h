@@ -46,6 +46,9 @@ class RenderSession {
     // that takes no more than twice the time that it was given, or someone who drags without a pause
     // would see nothing.
     void show(PictureRequest request);
+    // It still is: all input has been looked at, and none wants another one. Nothing is refined before
+    // that has been said after a moment without a request.
+    void stays();
 
     // Takes over what is finished.
     PictureChange poll();

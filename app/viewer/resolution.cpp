@@ -15,6 +15,8 @@ constexpr int pictures_with_room = 15;
 // of the worse is expected: of a finer one that the time grows with almost the square of the step's
 // ratio, of a coarser one that it shrinks with less than the ratio itself.
 constexpr double growth = 1.6, shrinking = 0.8;
+// A picture that takes so much of what a finer one takes is not worth being coarse.
+constexpr double hardly_quicker = 0.85;
 // Shading costs so much of tracing, until more is known.
 constexpr double shading_share = 0.25;
 
@@ -27,7 +29,7 @@ std::optional<double> Resolution::Times::typical() const {
     if (count == 0) return std::nullopt;
     std::array<double, 5> sorted = last_;
     std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
-    return sorted[count / 2];
+    return sorted[(count - 1) / 2];
 }
 
 std::size_t Resolution::choose(const FineWork& work, double budget, bool goes_on,
@@ -38,8 +40,9 @@ std::size_t Resolution::choose(const FineWork& work, double budget, bool goes_on
     if (!goes_on || at_least > step_) {
         step_ = std::max(finest_within(comfortable * budget, work), at_least);
         with_room_ = 0;
-    } else if (!stays_within(budget)) {
-        step_ = std::max(finest_within(comfortable * budget, work), step_);
+    } else if (const std::size_t coarser = finest_within(comfortable * budget, work);
+               coarser > step_ && !stays_within(budget)) {
+        step_ = coarser;
         with_room_ = 0;
     } else if (const std::size_t finer = finest_within(with_room * budget, work); finer >= step_) {
         with_room_ = 0;
@@ -58,13 +61,14 @@ void Resolution::learn(std::size_t step, const FineWork& work, double seconds) {
     }
 }
 
-// The finest step that is; where a picture of every pixel would take less than one that is, as where
-// it only has to be shaded, that.
+// The finest step that is; where none is, the one that is quickest. Where a finer one takes hardly
+// longer that one instead: a processor that others use, too, may be late with any.
 std::size_t Resolution::finest_within(double seconds, const FineWork& work) const {
-    std::size_t step = 0;
-    while (step + 1 < resolution_steps.size() && expected(step, work).value_or(0) > seconds) ++step;
-    const auto fine = expected(0, work), chosen = expected(step, work);
-    return fine && chosen && *fine <= *chosen ? 0 : step;
+    const auto takes = [&](std::size_t step) { return expected(step, work).value_or(0); };
+    std::size_t best = 0;
+    for (std::size_t step = 1; step < resolution_steps.size() && takes(best) > seconds; ++step)
+        if (takes(step) < hardly_quicker * takes(best)) best = step;
+    return best;
 }
 
 std::optional<double> Resolution::expected(std::size_t step, const FineWork& work) const {

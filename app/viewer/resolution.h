@@ -11,7 +11,7 @@
 namespace ivory {
 
 // Pixels of the window a side that one pixel of a picture covers, from fine to coarse.
-inline constexpr std::array<double, 9> resolution_steps = {1, 1.5, 2, 3, 4, 6, 8, 12, 16};
+inline constexpr std::array<double, 8> resolution_steps = {1, 1.5, 2, 3, 4, 6, 8, 12};
 
 // What is left to do of a picture of every pixel, where those of earlier pictures serve.
 struct FineWork {
@@ -24,8 +24,8 @@ struct FineWork {
 class Resolution {
   public:
     // An index into resolution_steps, `at_least` or more: the finest whose picture takes no longer
-    // than `budget`, as far as can be told; the coarsest, where none does. What nothing is known
-    // of is thought to be in time. `goes_on`: the picture before was of the same motion, so that
+    // than `budget`, as far as can be told; where none does, the quickest. What nothing is known of
+    // is thought to be in time. `goes_on`: the picture before was of the same motion, so that
     // another step than its own has to be called for: a coarser one because its own takes too
     // long, a finer one because it has long been in time with much to spare.
     [[nodiscard]] std::size_t choose(const FineWork& work, double budget, bool goes_on,

@@ -33,7 +33,7 @@ constexpr double frame_seconds = 1.0 / 60;  // of the script's own time, whateve
 constexpr int longest_wait = 60 * IVORY_PATIENCE;  // seconds for a final picture
 // A person waits for the surface to follow before moving on; no longer than that for a heavy scene.
 constexpr double patience = 2 * IVORY_PATIENCE;  // seconds
-constexpr double budget_at_pace = 1.0 / 30;      // seconds, as in a window
+constexpr double frames_until_shown = 2;         // at a pace: at 60 a second as in a window
 constexpr double between_looks = 0.05;           // seconds: whether somebody wants to stop
 constexpr int frames_to_settle = 3;
 constexpr int most_wheel_steps = 2000;
@@ -186,7 +186,7 @@ double ScriptPlayer::wait_for_turn() {
 void ScriptPlayer::take(const step::Pace& step) {
     pace_ = step.per_second;
     turned_ = Clock::now();
-    viewer_.set_frame_budget(pace_ == 0 ? patience : budget_at_pace);
+    viewer_.set_frame_budget(pace_ == 0 ? patience : frames_until_shown / pace_);
 }
 
 void ScriptPlayer::turn(Event event) {

@@ -172,7 +172,10 @@ struct Viewer::Parts {
         if (!compared && asked.scene && same_picture(*asked.scene, *wanted.scene))
             same_as_asked = wanted.scene;
         if (wanted.scene == same_as_asked) wanted.scene = asked.scene;
-        if (wanted == asked) return false;
+        if (wanted == asked) {
+            session.stays();
+            return false;
+        }
         asked = wanted;
         same_as_asked = nullptr;
         edited = start;

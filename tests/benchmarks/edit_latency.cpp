@@ -113,6 +113,7 @@ Latency show(RenderSession& session, std::counting_semaphore<>& woken, const Sce
     do {
         woken.acquire();
         session.poll();
+        session.stays();
         if (!session.state().fault.empty()) throw Error(session.state().fault);
     } while (!session.state().final);
     return {session.state().first_milliseconds, session.state().milliseconds,

@@ -109,6 +109,7 @@ class Session : public testing::Test {
         const Clock::time_point start = Clock::now();
         while (!done()) {
             if (Clock::now() - start > std::chrono::minutes(1)) return false;
+            session.stays();
             wake_up.wait(0.02);
         }
         return true;
@@ -375,7 +376,10 @@ TEST_F(Session, AnEditCancelsRefinement) {
     constexpr WindowSize large{3000, 2400};
     budget = std::chrono::milliseconds(0);
     show(with_left_blob_at(-1.2), camera(), large);
-    ASSERT_TRUE(wait_until([&] { return session.totals().tiles_traced > 0; }));
+    ASSERT_TRUE(wait_until([&] {
+        session.poll();
+        return session.totals().tiles_traced > 0;
+    }));
     Camera other = camera();
     other.position.y += 0.1;
     show(with_left_blob_at(-1.2), other, size);

@@ -108,6 +108,17 @@ TEST(Resolution, ShadingInFullIsTakenWhereItIsQuickerThanTracingLess) {
     EXPECT_EQ(resolution.choose(shading, 0.02, false), 0u);
 }
 
+// Others use the processor, and each picture waits for it.
+TEST(Resolution, WhereCoarserIsNoQuickerFinerIsTaken) {
+    Resolution resolution;
+    std::size_t step = 0;
+    for (int picture = 0; picture < 300; ++picture) {
+        step = resolution.choose(whole, 0.02, picture > 0);
+        resolution.learn(step, whole, 0.06 + seconds_of(step, 0.01));
+    }
+    EXPECT_LE(step, 2u);
+}
+
 TEST(Resolution, AfterOneThatWasGivenUpACoarserOneFollows) {
     Resolution resolution;
     std::size_t step = resolution.choose(whole, 0.02, false);

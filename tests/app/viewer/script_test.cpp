@@ -31,6 +31,8 @@ TEST(Script, CommentsAndBlankLinesAreCountedAndPassedOver) {
 }
 
 TEST(Script, EveryStepOfTheContractIsRead) {
+    EXPECT_EQ(only_step<step::Pace>(R"({"pace": 60})").per_second, 60);
+    EXPECT_EQ(only_step<step::Pace>(R"({"pace": 0})").per_second, 0);
     EXPECT_EQ(only_step<step::Frames>(R"({"frames": 3})").count, 3);
     EXPECT_EQ(only_step<step::Mouse>(R"({"mouse": [10, 20.5]})").at, (WindowPoint{10, 20.5}));
     EXPECT_EQ(only_step<step::Press>(R"({"press": "left"})").button, MouseButton::left);
@@ -177,9 +179,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{R"({"wait": "fnal"})", R"(wait has to be "final")"},
         Wrong{R"({"waits": "final"})", R"("waits" is no step; "wait" is)"},
-        Wrong{R"({"xyzzy": 1})", "steps are wait, frames"}, Wrong{R"({})", "is no step"},
+        Wrong{R"({"xyzzy": 1})", "steps are wait, pace, frames"}, Wrong{R"({})", "is no step"},
         Wrong{R"([1])", "a step is an object"},
         Wrong{R"({"wait": "final")", "column 17: the text ends inside"},
+        Wrong{R"({"pace": -1})", "pace has to be 0, or from 1 to 1000 frames a second"},
+        Wrong{R"({"pace": "slow"})", "pace"},
         Wrong{R"({"frames": -1})", "frames has to be a whole number"},
         Wrong{R"({"frames": 1.5})", "frames has to be a whole number"},
         Wrong{R"({"mouse": [1]})", "mouse has to be [x, y]"},

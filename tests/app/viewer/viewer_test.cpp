@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "app/viewer/frame_texture.h"
 #include "app/viewer/script.h"
 #include "app/viewer/script_player.h"
+#include "app/viewer/smoothing.h"
 #include "app/viewer/state_file.h"
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
@@ -370,6 +372,55 @@ TEST_P(InMemory, EveryStepOfADragShowsThatStepsScene) {
     EXPECT_EQ(driven.state().document.undo_name(), "Move " + name);
 }
 
+// At the pace of a person, in a window far too large for the time there is: frame after frame.
+TEST_P(InMemory, WhatMovesIsCalmAndWhatIsDrawnOverItIsOfItsMoment) {
+    const auto context = context_or_skip({1400, 1000});
+    if (!context) return;
+    Driven driven(*context, {1400, 1000});
+    driven.play(R"({"select": "point 1"}
+                   {"wait": "final"}
+                   {"grab": {"element": "point 1", "handle": "position"}})");
+    std::string moves = R"({"pace": 60})";
+    for (int step = 0; step < 40; ++step)
+        moves += step % 20 < 10 ? "\n{\"move\": [5, -1]}" : "\n{\"move\": [-5, 1]}";
+    driven.play(moves);
+    const std::size_t moving = 40;
+    const std::uint64_t frames_before = driven.viewer().frame_count() - moving;
+    driven.play(R"({"release": "left"}
+                   {"wait": "final"})");
+    const auto& frames = driven.viewer().frames();
+    const std::size_t first = frames.size() - (driven.viewer().frame_count() - frames_before);
+    std::size_t shown = 0;
+    for (std::size_t i = first; i < first + moving; ++i) {
+        EXPECT_TRUE(frames[i].fine == 0 || frames[i].fine == 1) << frames[i].fine;
+        EXPECT_EQ(frames[i].fine == 1, frames[i].resolution == 1);
+        if (frames[i].handle_to_surface) {
+            EXPECT_LT(*frames[i].handle_to_surface, 0.01) << i;
+        }
+        shown += frames[i].age.has_value();
+    }
+    EXPECT_GT(shown, 5u);
+    driven.play(R"({"pace": 0})");
+    EXPECT_TRUE(viewport_is_render(driven));
+}
+
+// Without a pace a frame shows its own input, whatever else the machine is doing.
+TEST_P(InMemory, WithoutAPaceEveryFrameShowsItsInputInFull) {
+    const auto context = context_or_skip({900, 700});
+    if (!context) return;
+    Driven driven(*context, {900, 700});
+    driven.play(R"({"wait": "final"}
+                   {"mouse": [300, 600]}
+                   {"press": "left"}
+                   {"move": [9, 1]})");
+    for (int step = 0; step < 20; ++step) {
+        driven.play(R"({"move": [4, 1]})");
+        EXPECT_EQ(driven.state().picture.camera, driven.state().view.camera);
+        EXPECT_EQ(driven.viewer().frames().back().resolution, 1);
+        EXPECT_TRUE(driven.viewer().frames().back().age.has_value());
+    }
+}
+
 // Draws the texture alone, as the viewer does.
 std::vector<Rgba8> drawn(const MemoryContext& context, const FrameTexture& texture,
                          const WindowRect& viewport) {
@@ -429,6 +480,87 @@ TEST_P(FrameTextures, AnotherSizeThanTheViewportStandsInItsMiddle) {
                       (inside ? Rgba8{9, 8, 7, 255} : Rgba8{1, 2, 3, 255}))
                 << i << ", " << j;
         }
+}
+
+// A coarse picture covers the window, filtered as light; tiles of the final one come to it little by little
+// and are exact in the end.
+TEST_P(FrameTextures, TilesFadeInOverACoarsePicture) {
+    const auto context = context_or_skip({90, 70});
+    if (!context) return;
+    FrameTexture texture(context->gl());
+    constexpr WindowSize size{48, 32};
+    const auto pixels = static_cast<std::size_t>(size.width * size.height);
+    ShownPicture picture{size, std::vector<Rgba8>(pixels, Rgba8{10, 20, 30, 255}), {}, {}, {}};
+    picture.fine.assign(6, 0);
+    picture.coarse.step = 2;
+    picture.coarse.size = coarse_size(size, 2);
+    picture.coarse.color.assign(24 * 16, Rgba8{0, 100, 200, 255});
+    for (std::size_t p = 0; p < picture.coarse.color.size(); ++p)
+        if (p % 24 >= 12) picture.coarse.color[p] = {255, 100, 200, 255};
+    texture.update(picture, {.replaced = true, .all = true, .coarse = true, .tiles = {}});
+    EXPECT_FALSE(texture.fading());
+    const WindowRect viewport{7, 11, size.width, size.height};
+    const auto at = [&](const std::vector<Rgba8>& colors, int i, int j) {
+        return colors[static_cast<std::size_t>(j * size.width + i)];
+    };
+    const auto expect_near = [](Rgba8 is, Rgba8 expected) {
+        EXPECT_NEAR(is.r, expected.r, 2);
+        EXPECT_NEAR(is.g, expected.g, 2);
+        EXPECT_NEAR(is.b, expected.b, 2);
+    };
+    std::vector<Rgba8> colors = drawn(*context, texture, viewport);
+    expect_near(at(colors, 0, 0), {0, 100, 200, 255});
+    expect_near(at(colors, 47, 31), {255, 100, 200, 255});
+    // a quarter and three quarters of the light of 255
+    expect_near(at(colors, 23, 16), {137, 100, 200, 255});
+    expect_near(at(colors, 24, 16), {225, 100, 200, 255});
+
+    picture.fine[4] = 1;  // the middle of the lower row
+    texture.update(picture, {.replaced = false, .all = false, .coarse = true, .tiles = {}});
+    EXPECT_TRUE(texture.fading());
+    int before = at(drawn(*context, texture, viewport), 30, 20).r;
+    expect_near({static_cast<std::uint8_t>(before), 100, 200, 255}, {255, 100, 200, 255});
+    int frames = 0;
+    while (texture.fading() && frames < 100) {
+        texture.fade(1.0 / 60);
+        colors = drawn(*context, texture, viewport);
+        EXPECT_LE(at(colors, 30, 20).r, before);
+        EXPECT_LT(before - at(colors, 30, 20).r, 60) << "it pops";
+        before = at(colors, 30, 20).r;
+        expect_near(at(colors, 0, 0), {0, 100, 200, 255});
+        ++frames;
+    }
+    EXPECT_GE(frames, 5);
+    EXPECT_LE(frames, 20);
+    EXPECT_EQ(at(colors, 16, 16), (Rgba8{10, 20, 30, 255}));
+    EXPECT_EQ(at(colors, 31, 31), (Rgba8{10, 20, 30, 255}));
+
+    // the next picture has every pixel: nothing of the coarse one is left
+    picture.fine.assign(6, 1);
+    picture.coarse = {};
+    texture.update(picture, {.replaced = true, .all = false, .coarse = true, .tiles = {}});
+    EXPECT_FALSE(texture.fading());
+    EXPECT_EQ(drawn(*context, texture, viewport), picture.color);
+}
+
+TEST(Smoothing, GrowsUntilItsPixelsAreSmallAndInventsNoLight) {
+    CoarsePicture picture;
+    picture.step = 12;
+    picture.size = {5, 3};
+    for (int p = 0; p < 15; ++p)
+        picture.color.push_back(p == 7 ? Rgba8{255, 0, 90, 255} : Rgba8{0, 0, 90, 255});
+    const SmoothPicture smooth = smoothed(picture);
+    EXPECT_EQ(smooth.size, (WindowSize{20, 12}));
+    ASSERT_EQ(smooth.color.size(), 240u);
+    double light = 0;
+    for (const Rgba8& color : smooth.color) {
+        EXPECT_EQ(color.g, 0);
+        EXPECT_EQ(color.b, 90);
+        light += std::pow(color.r / 255.0, 2.2);
+    }
+    EXPECT_NEAR(light, 16, 0.5);  // that of one pixel, which are 16 now
+    picture.step = 3;
+    EXPECT_EQ(smoothed(picture).color, picture.color);
 }
 
 TEST(RowsOfTiles, NeighboursInARowBecomeOne) {
