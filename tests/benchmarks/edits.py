@@ -5,8 +5,9 @@ edits.csv: the viewer's render session without a window: until a first picture o
 complete, and until it equals a full rendering (after a change of shape that includes the tenth of a
 second in which the hand has to rest).
 
-edits_in_window.csv: the viewer itself, without a display, software OpenGL and all. first: from the
-input to the first changed picture (median and greatest of the steps, of which a drag has ten); final:
+edits_in_window.csv: the viewer itself, without a display, software OpenGL and all, every picture of
+every pixel (motion has those that have to be there in time). first: from the input to the first changed
+picture (median and greatest of the steps, of which a drag has ten); final:
 all frames from the first input, such as a click into a field, until the picture equals a full
 rendering. Tiles: how many were traced in all these steps together, and how many there are."""
 
