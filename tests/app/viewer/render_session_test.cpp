@@ -270,7 +270,6 @@ TEST_F(Session, NoPictureMixesScenesOrResolutions) {
             if (HasFatalFailure()) return;
         }
     }
-    EXPECT_GE(seen.size(), 2u);
     show(scenes[3]);
     ASSERT_TRUE(wait_until([&] {
         session.poll();
@@ -278,6 +277,7 @@ TEST_F(Session, NoPictureMixesScenesOrResolutions) {
         return session.state().final || HasFatalFailure();
     }));
     EXPECT_EQ(session.shown().color, gallery.picture(scenes[3], size));
+    EXPECT_GE(seen.size(), 2u);
 }
 
 // A picture of fewer pixels stands for itself until the hand rests; then tiles of the final picture come

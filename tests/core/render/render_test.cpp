@@ -186,7 +186,7 @@ TEST(Render, SmallPicturesOfCrowdedScenesLeaveNoRayAlone) {
 
 TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
     for (const int threads : {1, 2, 4, 7}) {
-        for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+        for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
             for (const bool keep_lists : {false, true}) {
                 Canvas canvas(frame_width, frame_height, true);
                 JobSettings settings;
@@ -273,7 +273,7 @@ TEST(Render, CoarseToFineTracesNoPixelTwice) {
     Scene scene;
     scene.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 30};
     scene.elements = {{.skeleton = PointSkeleton{}, .width = 10}};  // fills the picture
-    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
         const Recorder recorder;
         Picture picture = picture_of(scene);
         picture.method = &recorder;
@@ -401,7 +401,7 @@ std::array<std::uint64_t, 5> counted(const Frame& frame) {
 
 // Tiles of 256 pixels, and tiles that the picture's edge cuts off.
 TEST(Render, TheTallyIsThatOfThePixels) {
-    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
         Canvas canvas(frame_width, frame_height, false);
         JobSettings settings;
         settings.order = order;
@@ -453,18 +453,23 @@ TEST(Render, SelectedTilesAreTracedWhole) {
 }
 
 TEST(Render, TheFocusComesFirst) {
-    Canvas canvas(600, 400, false);
-    Scene scene = mixed_scene();
-    std::vector<PixelRect> seen;
-    JobSettings settings;
-    settings.order = Order::coarse_to_fine;
-    settings.focus_i = 590;
-    settings.focus_j = 10;
-    settings.on_tile = [&](const TileNotice& notice) { seen.push_back(notice.rect); };
-    render(picture_of(scene, "proved", 600, 400), canvas, settings);
-    ASSERT_FALSE(seen.empty());
-    EXPECT_GE(seen.front().x0, 576);
-    EXPECT_LT(seen.front().y0, 64);
+    for (const Order order : {Order::from_focus, Order::coarse_to_fine}) {
+        Canvas canvas(600, 400, false);
+        Scene scene = mixed_scene();
+        std::vector<PixelRect> seen;
+        JobSettings settings;
+        settings.order = order;
+        settings.focus_i = 590;
+        settings.focus_j = 10;
+        settings.on_tile = [&](const TileNotice& notice) { seen.push_back(notice.rect); };
+        render(picture_of(scene, "proved", 600, 400), canvas, settings);
+        ASSERT_FALSE(seen.empty());
+        EXPECT_GE(seen.front().x0, 576);
+        EXPECT_LT(seen.front().y0, 64);
+        if (order == Order::from_focus) {
+            EXPECT_EQ(seen.size(), canvas.tiles.size());
+        }
+    }
 }
 
 TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
@@ -474,7 +479,7 @@ TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
     constexpr Rgba8 untouched{1, 2, 3, 4};  // a is 255 in every pixel that is drawn
 
     for (const int notices : {0, 1, 5, 40, 100, 150, 200}) {
-        for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+        for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
             Canvas canvas(frame_width, frame_height, false);
             for (std::size_t p = 0; p < canvas.frame.size(); ++p) canvas.frame.color[p] = untouched;
             std::mutex mutex;
@@ -550,7 +555,7 @@ TEST(Render, OnlySelectedTilesAreTouched) {
     const Picture picture = picture_of(mixed_scene());
     Canvas expected(frame_width, frame_height, false);
     render(picture, expected, {});
-    for (const Order order : {Order::plain, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
         Canvas canvas(frame_width, frame_height, false);
         JobSettings settings;
         settings.order = order;
