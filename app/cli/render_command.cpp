@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "app/cli/commands.h"
@@ -106,11 +107,19 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
         settings.sampled = eye.sampled.get();
     }
     FrameJob job(eye.picture, *eye.canvas, settings);
+    // One thread works here itself, and a tile may take long.
+    std::optional<InterruptBell> bell;
+    try {
+        bell.emplace([&job] { job.cancel(); });
+    } catch (const std::system_error&) {
+        // then a signal is seen between tiles
+    }
     while (!job.wait_for(std::chrono::milliseconds(50))) {
         stop_if_interrupted();  // the job cancels itself on the way out
         progress.show(label + std::to_string(static_cast<int>(100 * job.progress())) + " %");
     }
     eye.report = job.finish();
+    if (!eye.report.complete) stop_if_interrupted();
     if (times > 1) {
         eye.sampled =
             std::make_unique<SampledPicture>(mean_of(eye.picture, *eye.canvas, arguments.samples));

@@ -81,6 +81,14 @@ void draw_size(ViewerState& state) {
     if (!parallel) tooltip("What is seen from top to bottom at the target.");
 }
 
+void draw_samples(ViewerState& state) {
+    const std::array choices = {Choice{"1", "1"}, Choice{"4", "4"}, Choice{"16", "16"}};
+    label(state, "Samples");
+    const std::size_t now = state.samples == 4 ? 2 : state.samples == 2 ? 1 : 0;
+    if (const auto clicked = choice_field(state, "view.samples", choices, now))
+        state.samples = *clicked == 2 ? 4 : *clicked == 1 ? 2 : 1;
+}
+
 void keep_view_and_name_it(ViewerState& state) {
     run(state, Action::keep_view);
     state.panels.view_name_wanted = true;
@@ -152,6 +160,7 @@ void draw_camera(ViewerState& state) {
     vector_fields(state, "camera.up", "", camera.up, 0.01,
                   [](Camera& changed, const Vec3d& up) { changed.up = up; });
     draw_size(state);
+    draw_samples(state);
 }
 
 void draw_views(ViewerState& state) {

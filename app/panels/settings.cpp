@@ -42,19 +42,23 @@ struct Whole {
 struct Look {
     Theme UserSettings::*value;
 };
+struct Samples {
+    int UserSettings::*value;
+};
 
 constexpr std::array<std::string_view, 2> theme_words{"dark", "light"};  // in the order of Theme
 
 // The defaults are those of UserSettings.
 struct Setting {
     std::string_view key;
-    std::variant<Switch, Whole, Look> kind;
+    std::variant<Switch, Whole, Look, Samples> kind;
 };
 
 constexpr std::array settings = {
     Setting{"theme", Look{&UserSettings::theme}},
     Setting{"panels", Switch{&UserSettings::panels_shown}},
     Setting{"skeleton", Switch{&UserSettings::skeleton_shown}},
+    Setting{"samples", Samples{&UserSettings::samples}},
     Setting{"window_width",
             Whole{&UserSettings::window_width, least_window_side, largest_window_side}},
     Setting{"window_height",
@@ -89,6 +93,14 @@ struct Access {
         return listed(theme_words, "or");
     }
 
+    std::string take(const Samples& setting, const JsonValue& value) const {
+        const double number = value.kind() == JsonKind::number ? value.number() : NAN;
+        if (number != 1 && number != 4 && number != 16) return "1, 4 or 16";
+        all.*setting.value = static_cast<int>(number);
+        return "";
+    }
+
+    std::string text(const Samples& setting) const { return std::to_string(all.*setting.value); }
     std::string text(const Switch& setting) const { return all.*setting.value ? "true" : "false"; }
     std::string text(const Whole& setting) const { return std::to_string(all.*setting.value); }
     std::string text(const Look& setting) const {

@@ -51,6 +51,7 @@ struct ViewerState {
     bool panels_hidden = false;  // Tab
     bool help_shown = false;     // ?
     bool skeleton_shown = true;  // the overlay as a whole
+    int samples = 1;             // a side of a pixel, of the final picture: 1, 2 or 4
     Message message;
     std::optional<KeptArrow> arrow;  // of the last normal that was dragged
     PanelMemory panels;

@@ -222,7 +222,9 @@ void RenderSession::Director::work(std::uint64_t number, const PictureRequest& r
     if (going_on && (is_coarse || canvas_.is_inexact())) going_on = hand_rests(number, request);
     if (going_on && is_coarse) going_on = refine(request);
     if (going_on && canvas_.is_inexact()) going_on = make_exact(request);
-    // what follows the final picture goes on from here, as long as going_on
+    // edges do not change from smooth to sharp and back while a hand moves
+    if (going_on && request.samples > 1) going_on = hand_rests(number, request);
+    if (going_on) going_on = sample(request);
     end(going_on);
     if (going_on) settings_.wake();
 }
@@ -369,6 +371,31 @@ bool RenderSession::Director::make_exact(const PictureRequest& request) {
     return complete;
 }
 
+// As `ivory render --samples` has it. False: cancelled.
+bool RenderSession::Director::sample(const PictureRequest& request) {
+    if (request.samples == 1) {
+        const std::lock_guard lock(mutex_);
+        board_.leave_samples(canvas_.canvas());
+        return true;
+    }
+    for (int side = 2; true; side = request.samples) {
+        SampledPicture sampled(canvas_.canvas(), side, false);
+        JobSettings settings;
+        settings.threads = settings_.threads;
+        settings.task = Task::sample;
+        settings.order = Order::from_focus;
+        if (request.focus) {
+            settings.focus_i = static_cast<int>(request.focus->x);
+            settings.focus_j = static_cast<int>(request.focus->y);
+        }
+        settings.sampled = &sampled;
+        settings.on_tile = [&](const TileNotice& notice) { deliver_samples(notice, sampled); };
+        FrameJob job(canvas_.picture(), canvas_.canvas(), std::move(settings));
+        if (!run(job, {.yields = true})) return false;
+        if (side == request.samples) return true;
+    }
+}
+
 // False: cancelled.
 bool RenderSession::Director::run_on_canvas(const CanvasWork& work, Order order,
                                             const PictureRequest& request, Patience patience) {
@@ -443,6 +470,19 @@ void RenderSession::Director::deliver(const TileNotice& notice) {
         wake = !before || now - last_wake_ >= refinement_interval;
         if (wake) last_wake_ = now;
         if (!before) condition_.notify_all();
+    }
+    if (wake) settings_.wake();
+}
+
+void RenderSession::Director::deliver_samples(const TileNotice& notice,
+                                              const SampledPicture& sampled) {
+    bool wake = false;
+    {
+        const std::lock_guard lock(mutex_);
+        board_.take_samples(notice, canvas_.canvas(), sampled);
+        const Time now = Clock::now();
+        wake = now - last_wake_ >= refinement_interval;
+        if (wake) last_wake_ = now;
     }
     if (wake) settings_.wake();
 }

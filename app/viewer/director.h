@@ -12,6 +12,7 @@
 //   hand_rests      nothing is done
 //   refine          every pixel, where they are fewer, tile by tile
 //   make_exact      what of an edit nobody can tell, until every byte is the final picture's
+//   sample          several samples a pixel, where they are wanted: 4, and then more
 #pragma once
 
 #include <chrono>
@@ -82,6 +83,7 @@ class RenderSession::Director {
     [[nodiscard]] bool hand_rests(std::uint64_t number, const PictureRequest& request);
     [[nodiscard]] bool refine(const PictureRequest& request);
     [[nodiscard]] bool make_exact(const PictureRequest& request);
+    [[nodiscard]] bool sample(const PictureRequest& request);
     [[nodiscard]] bool run_on_canvas(const CanvasWork& work, Order order,
                                      const PictureRequest& request, Patience patience);
     [[nodiscard]] bool run(FrameJob& job, Patience patience);
@@ -89,6 +91,7 @@ class RenderSession::Director {
     void finish_tiles(const CanvasWork& work, bool complete);
 
     void deliver(const TileNotice& notice);
+    void deliver_samples(const TileNotice& notice, const SampledPicture& sampled);
 
     Settings settings_;
 

@@ -38,6 +38,7 @@ void PictureBoard::lay_out(WindowSize size, std::size_t tiles) {
     changed_.clear();
     is_changed_.assign(tiles, 0);
     is_here_.assign(tiles, 0);
+    is_sampled_.assign(tiles, 0);
     tally.lay_out(tiles);
     laid_out_ = size;
 }
@@ -67,6 +68,7 @@ std::uint64_t PictureBoard::take(const TileNotice& notice, const Canvas& canvas)
             take_row(canvas.frame, canvas.frame.at(rect.x0, j), rect.width(), tile.empty);
         if (is_changed_[notice.tile] == 0) changed_.push_back(notice.tile);
         is_changed_[notice.tile] |= tracing_ ? 3 : 1;
+        is_sampled_[notice.tile] = 0;
     }
     if (is_here_[notice.tile] == 0) {
         is_here_[notice.tile] = 1;
@@ -84,6 +86,33 @@ void PictureBoard::take_row(const Frame& frame, std::size_t first, int count, bo
     if (misses) return;
     for (std::size_t p = first; p < first + columns; ++p)
         if (possibly_hit(frame.status[p])) depth_[p] = static_cast<float>(midpoint(frame.t(p)));
+}
+
+void PictureBoard::take_samples(const TileNotice& notice, const Canvas& canvas,
+                                const SampledPicture& sampled) {
+    take_colors(notice.rect, canvas, sampled.color);
+    if (is_changed_[notice.tile] == 0) changed_.push_back(notice.tile);
+    is_changed_[notice.tile] |= 1;
+    is_sampled_[notice.tile] = 1;
+    tally.name_anew(notice.tile, sampled.pixels[notice.tile]);
+}
+
+void PictureBoard::leave_samples(const Canvas& canvas) {
+    for (std::size_t tile = 0; tile < is_sampled_.size(); ++tile) {
+        if (std::exchange(is_sampled_[tile], std::uint8_t{0}) == 0) continue;
+        take_colors(canvas.grid.tiles.rect(tile), canvas, canvas.frame.color);
+        if (is_changed_[tile] == 0) changed_.push_back(tile);
+        is_changed_[tile] |= 1;
+        tally.name_anew(tile, canvas.tiles[tile].pixels);
+    }
+}
+
+void PictureBoard::take_colors(const PixelRect& rect, const Canvas& canvas,
+                               const Plane<Rgba8>& color) {
+    for (int j = rect.y0; j < rect.y1; ++j) {
+        const std::size_t first = canvas.frame.at(rect.x0, j);
+        std::copy_n(&color[first], rect.width(), &color_[first]);
+    }
 }
 
 void PictureBoard::take_coarse(CoarsePicture&& picture) {

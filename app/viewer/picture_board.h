@@ -15,6 +15,7 @@
 #include "core/render/canvas.h"
 #include "core/render/frame.h"
 #include "core/render/render.h"
+#include "core/render/sampled_picture.h"
 
 namespace ivory {
 
@@ -46,6 +47,11 @@ class PictureBoard {
                 bool job_traces);
     // What a worker has made of a tile. How many more of its pixels are there now.
     std::uint64_t take(const TileNotice& notice, const Canvas& canvas);
+    // The tile with several samples a pixel, in place of what it was; and all that are so as they were
+    // before.
+    void take_samples(const TileNotice& notice, const Canvas& canvas,
+                      const SampledPicture& sampled);
+    void leave_samples(const Canvas& canvas);
     // All of the picture in fewer pixels: it is what is seen.
     void take_coarse(CoarsePicture&& picture);
     // From now on the tiles that are there are seen in place of the coarse picture.
@@ -66,6 +72,7 @@ class PictureBoard {
     };
 
     void lay_out(WindowSize size, std::size_t tiles);
+    void take_colors(const PixelRect& rect, const Canvas& canvas, const Plane<Rgba8>& color);
     void take_row(const Frame& frame, std::size_t first, int count, bool misses);
     bool hand_over_tile(const PixelRect& rect, bool with_depth, ShownPicture& shown) const;
     void set_fine(std::vector<std::uint8_t>& fine) const;
@@ -74,6 +81,7 @@ class PictureBoard {
     std::vector<Rgba8> color_;
     std::vector<float> depth_;
     std::vector<std::uint8_t> is_here_;     // by tile
+    std::vector<std::uint8_t> is_sampled_;  // by tile: its colours are of several samples a pixel
     std::size_t missing_ = 0;               // tiles
     std::vector<std::size_t> changed_;      // tiles since they were handed over, each once
     std::vector<std::uint8_t> is_changed_;  // by tile: 1: its colours, 3: its depth too

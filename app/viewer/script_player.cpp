@@ -330,8 +330,11 @@ void ScriptPlayer::set_color(const std::string& id, const json& value) {
 }
 
 void ScriptPlayer::choose(const std::string& id, const json& value) {
-    if (!value.is_string()) throw Error(in_quotes(id) + " takes a word, not " + shown(value));
-    const std::string option = id + "." + value.get<std::string>();
+    if (!value.is_string() && !value.is_number_unsigned())
+        throw Error(in_quotes(id) + " takes a word, not " + shown(value));
+    // words may be whole numbers
+    const std::string option =
+        id + "." + (value.is_string() ? value.get<std::string>() : value.dump());
     const Widgets& widgets = viewer_.state().widgets;
     if (widgets.find(option) == nullptr) click_widget(id);
     if (widgets.find(option) == nullptr) {

@@ -49,6 +49,15 @@ class TileTally {
         return more;
     }
 
+    // All of the tile's pixels are there, and are named after several samples, or no longer so.
+    void name_anew(std::size_t tile, const std::array<std::uint16_t, 5>& pixels) {
+        for (std::size_t status = 0; status < statuses_.size(); ++status) {
+            statuses_[status] += pixels[status];
+            statuses_[status] -= tile_statuses_[tile][status];
+        }
+        tile_statuses_[tile] = pixels;
+    }
+
     [[nodiscard]] std::size_t own(std::size_t tile) const { return own_[tile]; }
     [[nodiscard]] std::uint64_t pixels() const { return pixels_; }
     [[nodiscard]] std::uint64_t tiles_traced() const { return tiles_traced_; }

@@ -70,6 +70,7 @@ struct Asked {
     std::shared_ptr<const Scene> scene;
     Camera camera;
     WindowSize size;
+    int samples = 1;
     friend bool operator==(const Asked&, const Asked&) = default;
 };
 
@@ -128,7 +129,8 @@ struct Viewer::Parts {
     }
 
     [[nodiscard]] bool shows_what_stands() const {
-        return asked == Asked{state.picture.scene, state.picture.camera, state.picture.size};
+        return asked ==
+               Asked{state.picture.scene, state.picture.camera, state.picture.size, asked.samples};
     }
 
     void set_style(const Input& input) {
@@ -150,7 +152,7 @@ struct Viewer::Parts {
     void frame_automatic_view() {
         const Document& document = state.document;
         if (!state.view.automatic || document.dragging() || !document.undo_name().empty()) return;
-        const Asked wanted{document.scene_value(), {}, state.viewport.size()};
+        const Asked wanted{document.scene_value(), {}, state.viewport.size(), 1};
         if (framed == wanted) return;
         framed = wanted;
         const double aspect = static_cast<double>(wanted.size.width) / wanted.size.height;
@@ -165,7 +167,8 @@ struct Viewer::Parts {
 
     // Whether another one than before is wanted.
     bool ask_for_picture(const Input& input, Clock::time_point start) {
-        Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size()};
+        Asked wanted{state.document.scene_value(), state.view.camera, state.viewport.size(),
+                     state.samples};
         // An edit that no picture shows is not waited for: the session goes on with the scene that
         // it has.
         const bool compared = wanted.scene == asked.scene || wanted.scene == same_as_asked;
@@ -179,7 +182,8 @@ struct Viewer::Parts {
         asked = wanted;
         same_as_asked = nullptr;
         edited = start;
-        session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start, due(start)});
+        session.show({wanted.scene, wanted.camera, wanted.size, focus(input), start, due(start),
+                      wanted.samples});
         return true;
     }
 

@@ -187,7 +187,7 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         Span x;
         double least;
     };
-    constexpr std::size_t most_leaves = 32, most_halvings = 512;
+    constexpr std::size_t most_leaves = 32, most_halvings = 512, deepest = 56;
     std::array<Leaf, most_leaves> leaves;
     std::size_t leaf_count = 0;
     double best = infinity<double>;
@@ -212,8 +212,10 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         leave(Span(x), square.lo);
     };
 
-    // One for each halving on the way down.
-    std::array<std::pair<double, double>, most_halvings + 2> open;
+    struct Part {
+        double a, b;
+    };
+    std::array<Part, deepest + 2> open;  // one for each halving on the way down
     std::size_t open_count = 0, halvings = 0;
     open[open_count++] = {-1, 1};
     while (open_count > 0) {
@@ -251,7 +253,8 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
             if (least > best) continue;
             // Where D is flat, about a centre of curvature or for an arc that is small beside |v|, halves
             // soon say no more than rounding has left.
-            if (gain.hi <= 2 * (square.hi - square.lo) || ++halvings > most_halvings) {
+            if (gain.hi <= 2 * (square.hi - square.lo) || open_count >= deepest ||
+                ++halvings > most_halvings) {
                 leave(x, least);
                 continue;
             }

@@ -152,7 +152,8 @@ void PacketTracer::certify(const Field& field, const ElementList& list, const Ra
     lanes_.t_hi = isolations.t_hi.data();
     take(rays, true);
     const double limit = exact_limit(field, rays.bundle);
-    descent_.begin(parts_, lanes_.rays, budget + static_cast<int>(parts_.size()) * budget_of_part);
+    // A part of one ray alone would not hold its pixel's.
+    descent_.begin(parts_, {}, budget + static_cast<int>(parts_.size()) * budget_of_part);
     const auto goes_on = [&](const BundlePart& part) {
         return any(part, Lanes::walking) || any(part, Lanes::entering);
     };

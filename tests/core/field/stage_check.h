@@ -180,8 +180,10 @@ inline double expect_stages_hold(const Field& field, const Window& window, const
                             const StageBounds& bounds) {
         SCOPED_TRACE(name);
         const auto f = static_cast<double>(sum);
-        // What plain double costs.
-        const double slack = 0x1p-51 * static_cast<double>(field.size() + 8) * (1 + most);
+        // What plain double costs: the sum, and the place, whose error is so many widths.
+        const double reach = std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + t;
+        const double slack = 0x1p-51 * static_cast<double>(field.size() + 8) * (1 + most) +
+                             0x1p-52 * reach / field.least_width * most;
         EXPECT_LE(exact - f, bounds.above + slack);
         EXPECT_LE(f - exact, bounds.below + slack);
         EXPECT_LE(std::abs(kept_slope * unit - slope),

@@ -764,13 +764,14 @@ TEST(Render, NoAnswerRestsOnWhatIsSkipped) {
 // The samples of a pixel, from the larger picture.
 struct Samples {
     std::set<Status> status;
-    Color sum;
 };
 
 // Pixel by pixel.
 std::vector<Samples> samples_of(const Picture& picture, int w, int h, int n) {
     Canvas larger(w * n, h * n, true);
-    render(picture, larger, {.task = Task::trace});
+    JobSettings no_colors;
+    no_colors.task = Task::trace;
+    render(picture, larger, no_colors);
     std::vector<Samples> samples(static_cast<std::size_t>(w * h));
     for (int j = 0; j < h * n; ++j) {
         for (int i = 0; i < w * n; ++i) {
@@ -786,6 +787,14 @@ int most_apart(const Rgba8& a, const Rgba8& b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
+JobSettings sampling(SampledPicture& sampled, int threads = 1) {
+    JobSettings settings;
+    settings.threads = threads;
+    settings.task = Task::sample;
+    settings.sampled = &sampled;
+    return settings;
+}
+
 // The contract's promise: of pixels whose samples differ in status the picture is their mean, of all
 // others within a byte of it.
 TEST(Render, SeveralSamplesArePromisedMeans) {
@@ -794,15 +803,14 @@ TEST(Render, SeveralSamplesArePromisedMeans) {
     std::size_t middles = 0, apart = 0, mixed = 0;
     for (const Scene& scene :
          {mixed_scene(), orthographic, tools::random_scene({.elements = 12}, 5),
-          tools::random_scene({.elements = 40, .only = tools::ElementKind{Shape::point}}, 8)}) {
+          tools::random_scene({.elements = 40}, 8)}) {
         for (const int n : {2, 3, 4}) {
             SCOPED_TRACE(std::to_string(n * n) + " samples");
             const Picture picture = picture_of(scene);
             Canvas canvas(frame_width, frame_height, false),
                 larger(n * frame_width, n * frame_height, true);
             SampledPicture sampled(canvas, n, false);
-            const JobReport report =
-                render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
+            const JobReport report = render(picture, canvas, sampling(sampled));
             ASSERT_TRUE(report.complete);
             render(picture, larger, {});
             const SampledPicture mean = mean_of(picture, larger, n);
@@ -831,24 +839,26 @@ TEST(Render, SeveralSamplesArePromisedMeans) {
 
 // Most pixels are known from fewer samples, and no thread, tile or order is seen in what comes out.
 TEST(Render, SeveralSamplesCostFewMore) {
-    const Picture picture = picture_of(mixed_scene());
-    Canvas canvas(frame_width, frame_height, false);
-    constexpr int n = 4;
+    constexpr int across = 4 * frame_width, down = 4 * frame_height, n = 4;
+    const Picture picture = picture_of(mixed_scene(), "proved", across, down);
+    Canvas canvas(across, down, false);
     SampledPicture sampled(canvas, n, false), all(canvas, n, true);
-    const JobReport some = render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
-    const JobReport every = render(picture, canvas, {.task = Task::sample, .sampled = &all});
+    const JobReport some = render(picture, canvas, sampling(sampled));
+    const JobReport every = render(picture, canvas, sampling(all));
     EXPECT_LT(3 * some.counts.evaluations, every.counts.evaluations);
     EXPECT_GT(some.elements_reached, 3u);
     SampledPicture again(canvas, n, false);
-    render(picture, canvas, {.threads = 3, .task = Task::sample, .sampled = &again});
+    render(picture, canvas, sampling(again, 3));
     std::vector<std::uint8_t> selected(canvas.tiles.size());
     for (std::size_t tile = 0; tile < selected.size(); tile += 3) selected[tile] = 1;
     SampledPicture few(canvas, n, false);
-    render(picture, canvas, {.task = Task::sample, .sampled = &few, .selected = selected});
+    JobSettings settings = sampling(few);
+    settings.selected = selected;
+    render(picture, canvas, settings);
     for (std::size_t p = 0; p < canvas.frame.size(); ++p) {
         ASSERT_EQ(again.color[p], sampled.color[p]);
-        const std::size_t tile = canvas.grid.tiles.at(static_cast<int>(p) % frame_width,
-                                                      static_cast<int>(p) / frame_width);
+        const std::size_t tile =
+            canvas.grid.tiles.at(static_cast<int>(p) % across, static_cast<int>(p) / across);
         if (selected[tile] != 0) {
             ASSERT_EQ(few.color[p], sampled.color[p]);
         }
@@ -867,7 +877,7 @@ TEST(Render, TheDepthOfSamplesIsTheLeast) {
     Canvas canvas(frame_width, frame_height, false),
         larger(2 * frame_width, 2 * frame_height, true);
     SampledPicture sampled(canvas, 2, true);
-    render(picture, canvas, {.task = Task::sample, .sampled = &sampled});
+    render(picture, canvas, sampling(sampled));
     render(picture, larger, {});
     const SampledPicture mean = mean_of(picture, larger, 2);
     int finite = 0;

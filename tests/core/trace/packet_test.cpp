@@ -100,7 +100,9 @@ TEST_P(PacketOfRays, AnswersAsSingleRaysDo) {
                 ++bundles;
                 const double spread = std::pow(10.0, random.uniform(-5, -0.7));
                 // Every third one from origins side by side.
-                const double radius = bundles % 3 == 0 ? std::pow(10.0, random.uniform(-4, -1)) : 0;
+                const double radius =
+                    bundles % 3 == 0 ? field.least_width * std::pow(10.0, random.uniform(-4, -1))
+                                     : 0;
                 const auto rays = bundle_around(ray, spread, 5 + random.below(40), random, radius);
                 BundleIsolations found;
                 Counts counts;
