@@ -21,9 +21,9 @@ inline constexpr int least_window_side = 64, largest_window_side = 32768;
 struct UserSettings {
     Theme theme = Theme::dark;
     bool panels_shown = true, skeleton_shown = true;
-    int samples = 16;                              // a pixel: 1, 4 or 16
     int window_width = 1280, window_height = 720;  // points, where it is not maximised
     bool window_maximised = false;
+    int samples = 16;  // a pixel: 1, 4 or 16
     friend bool operator==(const UserSettings&, const UserSettings&) = default;
 };
 

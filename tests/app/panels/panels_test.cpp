@@ -53,7 +53,7 @@ bool overlap(const WindowRect& a, const WindowRect& b) {
 
 // A choice lies under its options, a list's row beside its eye.
 bool may_overlap(const std::string& a, const std::string& b) {
-    for (const char* choice : {"element.kernel", "camera.projection"})
+    for (const char* choice : {"element.kernel", "camera.projection", "view.samples"})
         if (a.starts_with(choice) && b.starts_with(choice)) return true;
     return false;
 }

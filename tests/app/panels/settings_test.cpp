@@ -28,7 +28,7 @@ class Settings : public testing::Test {
         std::ofstream(path) << text;
     }
     [[nodiscard]] std::string text() const { return read_file(path); }
-    static UserSettings others() { return {Theme::light, false, false, 800, 600, true}; }
+    static UserSettings others() { return {Theme::light, false, false, 800, 600, true, 4}; }
 };
 
 // The environment as it was, afterwards.
@@ -111,7 +111,7 @@ TEST_F(Settings, WhatIsNotOnTheListStays) {
 TEST_F(Settings, AValueThatMayNotBeIsPassedOverWithAWord) {
     for (const std::string member :
          {R"("theme": "blue")", R"("theme": 1)", R"("panels": 1)", R"("window_width": 1e9)",
-          R"("window_width": 100.5)", R"("window_height": "tall")"}) {
+          R"("window_width": 100.5)", R"("window_height": "tall")", R"("samples": 9)"}) {
         SCOPED_TRACE(member);
         put("{" + member + R"(, "skeleton": false})");
         EXPECT_EQ(file.read(), (UserSettings{.skeleton_shown = false}));

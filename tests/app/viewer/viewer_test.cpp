@@ -20,6 +20,7 @@
 #include "core/render/camera.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "core/render/sampled_picture.h"
 #include "core/scene/error.h"
 #include "core/scene/scene_json.h"
 #include "tests/app/platform/memory_contexts.h"
@@ -122,6 +123,50 @@ TEST_P(InMemory, AtOtherSizesAndScalesToo) {
     EXPECT_TRUE(viewport_is_render(driven));
     EXPECT_EQ(driven.state().window, (WindowSize{641, 377}));
     driven.play(R"({"key": "tab"})");
+    EXPECT_TRUE(viewport_is_render(driven));
+}
+
+// Byte for byte what `render --samples` of that number draws, after an edit too; and with one sample again what
+// it was.
+TEST_P(InMemory, SeveralSamplesAPixelAreThoseOfRender) {
+    const auto context = context_or_skip({1100, 1000});
+    if (!context) return;
+    Driven driven(*context, {1100, 1000});
+    const auto expect_samples = [&](int side) {
+        driven.viewer().hide_overlay(true);
+        driven.play(R"({"wait": "final"}
+                       {"frames": 2})");
+        driven.viewer().hide_overlay(false);
+        const WindowRect viewport = driven.state().viewport;
+        const WindowSize size = viewport.size();
+        const Picture picture = make_picture(driven.state().scene_with_view(), size.width,
+                                             size.height, *find_method("proved"), {});
+        Canvas canvas(size.width, size.height, false);
+        SampledPicture sampled(canvas, side, false);
+        JobSettings settings;
+        settings.task = Task::sample;
+        settings.sampled = &sampled;
+        static_cast<void>(render(picture, canvas, settings));
+        const std::vector<Rgba8> shown = colors_of(driven.viewer().read_back(), viewport);
+        std::size_t differing = 0;
+        for (std::size_t p = 0; p < shown.size(); ++p) differing += shown[p] != sampled.color[p];
+        EXPECT_EQ(differing, 0u);
+        std::array<std::uint64_t, 5> pixels{};
+        for (const auto& tile : sampled.pixels)
+            for (std::size_t status = 0; status < tile.size(); ++status)
+                pixels[status] += tile[status];
+        const PictureState& told = driven.state().picture;
+        EXPECT_EQ(told.hit, pixels[static_cast<std::size_t>(Status::hit)]);
+        EXPECT_EQ(told.miss, pixels[static_cast<std::size_t>(Status::miss)]);
+    };
+    EXPECT_TRUE(viewport_is_render(driven));
+    driven.play(R"({"widget": "view.samples", "set": 4})");
+    expect_samples(2);
+    driven.play(R"({"drag": {"element": "point 1", "handle": "position", "by": [40, 10]}})");
+    expect_samples(2);
+    driven.play(R"({"widget": "view.samples", "set": "16"})");
+    expect_samples(4);
+    driven.play(R"({"widget": "view.samples", "set": 1})");
     EXPECT_TRUE(viewport_is_render(driven));
 }
 
