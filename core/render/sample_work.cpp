@@ -12,7 +12,7 @@ namespace {
 
 // A mean may be off by so many bytes where the middle stands for it. One byte is promised: what is left
 // is for what the parabolas do not know.
-constexpr double most_off = 0.6;
+constexpr double most_off = 0.4;
 // Second differences count as those of a smooth function where their own are no more than such a share.
 constexpr double smooth = 0.25;
 

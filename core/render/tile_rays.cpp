@@ -17,16 +17,20 @@ Bundle TileRays::bundle(std::size_t number, const PixelRect& part_of_tile) const
                : bundle_around(*view_, all_width_, all_height_, times(part_of_tile, samples_));
 }
 
-void TileRays::begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
-                     int samples) {
+void TileRays::look_through(const View& view, int width, int height, int samples) {
     view_ = &view;
     samples_ = samples;
     all_width_ = width * samples;
     all_height_ = height * samples;
+    rays.count = rays.part_count = 0;
+}
+
+void TileRays::begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
+                     int samples) {
+    look_through(view, width, height, samples);
     in_parts_ = in_parts;
     is_whole_ = rect.width() == tile_side && rect.height() == tile_side;
     plane_.emplace(view, width, height, rect);
-    rays.count = rays.part_count = 0;
     if (in_parts && is_whole_) {
         bundles_ = tile_bundles(view, all_width_, all_height_, rect.x0 * samples, rect.y0 * samples,
                                 samples);
@@ -64,14 +68,10 @@ void TileRays::end(const View& view) {
 
 void TileRays::gather_ring(const View& view, int width, int height, const PixelRect& rect,
                            int samples) {
-    view_ = &view;
-    samples_ = samples;
-    all_width_ = width * samples;
-    all_height_ = height * samples;
+    look_through(view, width, height, samples);
     is_whole_ = false;
     in_parts_ = true;
     const PixelRect all = widened(rect, 1);
-    rays.count = rays.part_count = 0;
     rays.bundle = bundle(0, all);
     rays.add_part(whole_of(rays.bundle));
     const auto add_piece = [&](const PixelRect& piece) {

@@ -77,6 +77,7 @@ struct TileRays {
     }
 
   private:
+    void look_through(const View& view, int width, int height, int samples);
     void begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
                int samples);
     // Calls visit(square) for the squares of 4 x 4 pixels, quarter by quarter of the tile; what it adds

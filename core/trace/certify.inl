@@ -95,7 +95,7 @@ constexpr int most_footprint_steps = 48, most_entry_guesses = 4, most_root_steps
 // A root is known to so many distances of the pixel's rays.
 constexpr double close_to_root = 1.0 / 64;
 // And where the normal may turn by more over rho, in radians, the middle does not say how the pixel looks.
-constexpr double most_turn = 0.75;
+constexpr double most_turn = 0.5;
 
 // Lanes that walk, up to where f + lateral < 0 cannot be told any longer, and from there to a place where
 // f - lateral > 0: all of the pixel's rays have their first root between. If that is not in the window, the
