@@ -9,7 +9,7 @@ namespace {
 
 // Of the budget: more than that is not counted on, since times vary; and what a finer picture has to
 // be within.
-constexpr double comfortable = 0.8, with_room = 0.6;
+constexpr double comfortable = 0.8, with_room = 0.7;
 constexpr int pictures_with_room = 15;
 // A picture of fewer pixels takes more for each: its tiles see more. Of a step that nothing is known
 // of the worse is expected: of a finer one that the time grows with almost the square of the step's
@@ -76,7 +76,15 @@ std::optional<double> Resolution::expected(std::size_t step, const FineWork& wor
     if (step == 0) {
         std::optional<double> each = work.shades ? shades_.typical() : trace;
         if (!each && work.shades && trace) each = shading_share * *trace;
-        if (each) return *each * work.effort;
+        if (each) {
+            // What was told of full pictures may be old, of one that came first and found nothing warm: one
+            // takes no more for each pixel than the coarser ones that are made now.
+            const auto now = step_ > 0 && !work.shades ? coarse_[step_].typical() : std::nullopt;
+            const double most = *each * work.effort;
+            if (!now || !(work.whole > 0)) return most;
+            return std::min(most, *now * resolution_steps[step_] * resolution_steps[step_] *
+                                      work.effort / work.whole);
+        }
         if (work.shades) return std::nullopt;
     } else if (const auto known = coarse_[step].typical()) {
         return known;
