@@ -481,6 +481,7 @@ void RenderSession::Director::deliver_samples(const TileNotice& notice,
         const std::lock_guard lock(mutex_);
         board_.take_samples(notice, canvas_.canvas(), sampled);
         const Time now = Clock::now();
+        board_.ended = now;
         wake = now - last_wake_ >= refinement_interval;
         if (wake) last_wake_ = now;
     }

@@ -1,36 +1,19 @@
-// Plays a script on a viewer in memory, as a person would: every step goes through the input, one
-// change a frame. Without a pace a frame waits for the picture of its input, however long that takes
-// within reason, so that what it shows does not depend on time.
+// Plays a script on a viewer in memory, as a person would: every step goes through the input.
 #pragma once
 
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <cstdint>
 #include <functional>
-#include <mutex>
 #include <string>
 
 #include "app/platform/context.h"
 #include "app/platform/input.h"
+#include "app/viewer/control_hand.h"
+#include "app/viewer/hand.h"
 #include "app/viewer/script.h"
 #include "app/viewer/state_file.h"
 #include "app/viewer/viewer.h"
+#include "app/viewer/wake_up.h"
 
 namespace ivory {
-
-// What ends a sleep of the loop: the memory's counterpart of a window system's events.
-class WakeUp {
-  public:
-    void wake();
-    // Until `wake` has been called since the last wait, or so many seconds have passed.
-    void wait(double seconds);
-
-  private:
-    std::mutex mutex_;
-    std::condition_variable condition_;
-    bool woken_ = false;
-};
 
 class ScriptPlayer {
   public:
@@ -47,39 +30,20 @@ class ScriptPlayer {
     void screenshot(const std::string& file, bool viewport);
 
   private:
-    void turn();
-    void turn(Event event);
-    void turns(int count);
-    void settle();
-    double wait_for_turn();
-    void move_to(WindowPoint at);
-    void click();
-    void stroke(const Chord& chord);
-    void type(const std::u32string& text);
-
-    // The widget with that id in sight, scrolled to and its menu opened if need be.
-    const Widget& bring_into_sight(const std::string& id);
-    void click_widget(const std::string& id);
-    void set_number(const std::string& id, const nlohmann::json& value);
-    void set_color(const std::string& id, const nlohmann::json& value);
-    void choose(const std::string& id, const nlohmann::json& value);
-    // Into the text field that has just been opened, in place of all that stands there.
-    void enter_text(const std::string& text);
-
     void take(const step::WaitFinal&) { wait_final(); }
-    void take(const step::Pace& step);
-    void take(const step::Frames& step) { turns(step.count); }
-    void take(const step::Mouse& step) { move_to(step.at); }
+    void take(const step::Pace& step) { hand_.set_pace(step.per_second); }
+    void take(const step::Frames& step) { hand_.turns(step.count); }
+    void take(const step::Mouse& step) { hand_.move_to(step.at); }
     void take(const step::MouseTo& step);
     void take(const step::Move& step);
-    void take(const step::Press& step) { turn(MouseButtonChanged{step.button, true}); }
-    void take(const step::Release& step) { turn(MouseButtonChanged{step.button, false}); }
+    void take(const step::Press& step) { hand_.turn(MouseButtonChanged{step.button, true}); }
+    void take(const step::Release& step) { hand_.turn(MouseButtonChanged{step.button, false}); }
     void take(const step::DoubleClick& step);
-    void take(const step::Wheel& step) { turn(WheelTurned{0, step.steps}); }
-    void take(const step::Hold& step) { turn(KeyChanged{step.key, true, false}); }
-    void take(const step::Let& step) { turn(KeyChanged{step.key, false, false}); }
+    void take(const step::Wheel& step) { hand_.turn(WheelTurned{0, step.steps}); }
+    void take(const step::Hold& step) { hand_.turn(KeyChanged{step.key, true, false}); }
+    void take(const step::Let& step) { hand_.turn(KeyChanged{step.key, false, false}); }
     void take(const step::KeyStroke& step);
-    void take(const step::Type& step) { type(step.text); }
+    void take(const step::Type& step) { hand_.type(step.text); }
     void take(const step::UseWidget& step);
     void take(const step::Pick& step);
     void take(const step::Select& step);
@@ -96,12 +60,9 @@ class ScriptPlayer {
 
     Viewer& viewer_;
     MemoryContext& context_;
-    EventQueue& events_;
+    Hand hand_;
+    ControlHand controls_;
     WakeUp& wake_up_;
-    std::function<void()> stop_;
-    // Frames and steps of input a second; 0: each as soon as the one before is done with.
-    double pace_ = 0;
-    std::chrono::steady_clock::time_point turned_;  // when the last frame began, at a pace
     StateBefore at_last_state_;
 };
 

@@ -151,6 +151,15 @@ std::string listed(std::span<const std::string_view> words, std::string_view con
     return list;
 }
 
+std::string some_of(std::span<const std::string> words) {
+    constexpr std::size_t most = 8;
+    const std::span<const std::string> some = words.first(std::min(words.size(), most));
+    std::vector<std::string> quoted;
+    for (const std::string& word : some) quoted.push_back(in_quotes(word));
+    return listed(std::vector<std::string_view>(quoted.begin(), quoted.end())) +
+           (words.size() > most ? " and others" : "");
+}
+
 std::optional<std::string_view> nearest_word(std::string_view word,
                                              std::span<const std::string_view> words) {
     std::optional<std::string_view> nearest;

@@ -39,6 +39,9 @@ void append_number(std::string& text, double value);
 [[nodiscard]] std::string listed(std::span<const std::string_view> words,
                                  std::string_view conjunction = "and");
 
+// The first eight of them in quotes, listed, "and others" if there are more.
+[[nodiscard]] std::string some_of(std::span<const std::string> words);
+
 // The word of `words` that `word` most likely was meant to be: at most two letters inserted, left
 // out or replaced (upper case counts as lower case), and fewer than half of them.
 [[nodiscard]] std::optional<std::string_view> nearest_word(std::string_view word,

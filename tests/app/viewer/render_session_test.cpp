@@ -20,7 +20,7 @@
 #include <tuple>
 #include <vector>
 
-#include "app/viewer/script_player.h"
+#include "app/viewer/wake_up.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
 #include "tests/tools/random_scene.h"
