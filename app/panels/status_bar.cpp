@@ -69,6 +69,8 @@ void draw_progress(const ViewerState& state) {
     std::string text = "Final";
     if (!picture.fault.empty()) {
         text = "No picture";
+    } else if (!picture.final && picture.progress >= 1) {
+        text = "Smoothing";
     } else if (!picture.final) {
         text = "Refining " + std::to_string(static_cast<int>(100 * picture.progress)) + " %";
     }

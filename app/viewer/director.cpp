@@ -219,11 +219,11 @@ void RenderSession::Director::work(std::uint64_t number, const PictureRequest& r
     const double budget = std::max(given - seconds_between(start, Clock::now()), given / 2);
     bool going_on = first_picture(request, first, budget);
     const bool is_coarse = !canvas_.unfinished().empty();
-    if (going_on && (is_coarse || canvas_.is_inexact())) going_on = hand_rests(number, request);
+    // Edges do not change from smooth to sharp and back while a hand moves.
+    const bool goes_further = is_coarse || canvas_.is_inexact() || request.samples > 1;
+    if (going_on && goes_further) going_on = hand_rests(number, request);
     if (going_on && is_coarse) going_on = refine(request);
     if (going_on && canvas_.is_inexact()) going_on = make_exact(request);
-    // edges do not change from smooth to sharp and back while a hand moves
-    if (going_on && request.samples > 1) going_on = hand_rests(number, request);
     if (going_on) going_on = sample(request);
     end(going_on);
     if (going_on) settings_.wake();
@@ -364,53 +364,65 @@ bool RenderSession::Director::make_exact(const PictureRequest& request) {
     const CanvasWork work = canvas_.kept();
     {
         const std::lock_guard lock(mutex_);
-        board_.expect(work.selected, work.kept, true);
+        board_.expect(work.selected, work.kept, true, false);
     }
     const bool complete = run_on_canvas(work, Order::plain, request, {.yields = true});
     finish_tiles(work, complete);
     return complete;
 }
 
-// As `ivory render --samples` has it. False: cancelled.
+// As `ivory render --samples` has it. False: cancelled. Tiles that an edit did not touch may have their
+// samples; whether they still are the final picture's is found out last.
 bool RenderSession::Director::sample(const PictureRequest& request) {
     if (request.samples == 1) {
         const std::lock_guard lock(mutex_);
         board_.leave_samples(canvas_.canvas());
         return true;
     }
-    for (int side = 2; true; side = request.samples) {
-        SampledPicture sampled(canvas_.canvas(), side, false);
-        JobSettings settings;
-        settings.threads = settings_.threads;
-        settings.task = Task::sample;
-        settings.order = Order::from_focus;
-        if (request.focus) {
-            settings.focus_i = static_cast<int>(request.focus->x);
-            settings.focus_j = static_cast<int>(request.focus->y);
-        }
-        settings.sampled = &sampled;
-        settings.on_tile = [&](const TileNotice& notice) { deliver_samples(notice, sampled); };
-        FrameJob job(canvas_.picture(), canvas_.canvas(), std::move(settings));
-        if (!run(job, {.yields = true})) return false;
-        if (side == request.samples) return true;
+    std::vector<std::uint8_t> sharp;
+    {
+        const std::lock_guard lock(mutex_);
+        sharp = board_.without_samples();
     }
+    const bool in_steps =
+        request.samples > 2 && std::find(sharp.begin(), sharp.end(), 1) != sharp.end();
+    if (in_steps && !take_samples(request, 2, std::move(sharp))) return false;
+    return take_samples(request, request.samples, {});
+}
+
+bool RenderSession::Director::take_samples(const PictureRequest& request, int side,
+                                           std::vector<std::uint8_t> selected) {
+    SampledPicture sampled(canvas_.canvas(), side, false);
+    JobSettings settings = job_settings(request);
+    settings.task = Task::sample;
+    settings.order = Order::from_focus;
+    settings.sampled = &sampled;
+    settings.selected = std::move(selected);
+    settings.on_tile = [&](const TileNotice& notice) { deliver_samples(notice, sampled); };
+    FrameJob job(canvas_.picture(), canvas_.canvas(), std::move(settings));
+    return run(job, {.yields = true});
+}
+
+JobSettings RenderSession::Director::job_settings(const PictureRequest& request) const {
+    JobSettings settings;
+    settings.threads = settings_.threads;
+    if (request.focus) {
+        settings.focus_i = static_cast<int>(request.focus->x);
+        settings.focus_j = static_cast<int>(request.focus->y);
+    }
+    return settings;
 }
 
 // False: cancelled.
 bool RenderSession::Director::run_on_canvas(const CanvasWork& work, Order order,
                                             const PictureRequest& request, Patience patience) {
     if (work.empty()) return true;
-    JobSettings settings;
-    settings.threads = settings_.threads;
+    JobSettings settings = job_settings(request);
     settings.task = work.task;
     settings.order = order;
     settings.keep_lists = true;
     if (work.task == Task::shade) settings.recolored = canvas_.recolored();
     settings.selected = work.selected;
-    if (request.focus) {
-        settings.focus_i = static_cast<int>(request.focus->x);
-        settings.focus_j = static_cast<int>(request.focus->y);
-    }
     settings.on_tile = [this](const TileNotice& notice) { deliver(notice); };
     FrameJob job(canvas_.picture(), canvas_.canvas(), std::move(settings));
     return run(job, patience);
@@ -466,12 +478,17 @@ void RenderSession::Director::deliver(const TileNotice& notice) {
         totals_.tiles_traced += board_.tally.tiles_traced() - tiles_before;
         if (board_.tracing()) totals_.pixels_traced += more;
         if (!board_.showable()) return;
-        const Time now = Clock::now();
-        wake = !before || now - last_wake_ >= refinement_interval;
-        if (wake) last_wake_ = now;
+        wake = wakes_again(Clock::now(), !before);
         if (!before) condition_.notify_all();
     }
     if (wake) settings_.wake();
+}
+
+// Under the lock: whether it is time for the window to look again.
+bool RenderSession::Director::wakes_again(Time now, bool in_any_case) {
+    const bool wakes = in_any_case || now - last_wake_ >= refinement_interval;
+    if (wakes) last_wake_ = now;
+    return wakes;
 }
 
 void RenderSession::Director::deliver_samples(const TileNotice& notice,
@@ -480,10 +497,8 @@ void RenderSession::Director::deliver_samples(const TileNotice& notice,
     {
         const std::lock_guard lock(mutex_);
         board_.take_samples(notice, canvas_.canvas(), sampled);
-        const Time now = Clock::now();
-        board_.ended = now;
-        wake = now - last_wake_ >= refinement_interval;
-        if (wake) last_wake_ = now;
+        board_.ended = Clock::now();
+        wake = wakes_again(board_.ended, false);
     }
     if (wake) settings_.wake();
 }

@@ -84,6 +84,9 @@ class RenderSession::Director {
     [[nodiscard]] bool refine(const PictureRequest& request);
     [[nodiscard]] bool make_exact(const PictureRequest& request);
     [[nodiscard]] bool sample(const PictureRequest& request);
+    [[nodiscard]] bool take_samples(const PictureRequest& request, int side,
+                                    std::vector<std::uint8_t> selected);
+    [[nodiscard]] JobSettings job_settings(const PictureRequest& request) const;
     [[nodiscard]] bool run_on_canvas(const CanvasWork& work, Order order,
                                      const PictureRequest& request, Patience patience);
     [[nodiscard]] bool run(FrameJob& job, Patience patience);
@@ -91,6 +94,7 @@ class RenderSession::Director {
     void finish_tiles(const CanvasWork& work, bool complete);
 
     void deliver(const TileNotice& notice);
+    bool wakes_again(Time now, bool in_any_case);
     void deliver_samples(const TileNotice& notice, const SampledPicture& sampled);
 
     Settings settings_;

@@ -32,7 +32,7 @@ CanvasWork EditedCanvas::follow(const PictureRequest& request) {
     const Likeness same = likeness(before, request);
     const bool whole = std::find(tiles_.begin(), tiles_.end(), Tile::outdated) == tiles_.end();
     if (same.view && same.places && same.threshold && whole) {
-        take_colors(scene);
+        take_colors(scene, same.light);
         task_ = Task::shade;
         return unfinished();
     }
@@ -77,8 +77,9 @@ EditedCanvas::Likeness EditedCanvas::likeness(const PictureRequest& before,
 }
 
 // Every pixel stays what it hits.
-void EditedCanvas::take_colors(const Scene& scene) {
+void EditedCanvas::take_colors(const Scene& scene, bool same_light) {
     const std::vector<std::uint32_t> changed = recolor(*field_, scene);
+    if (changed.empty() && same_light) return;  // of what is owed nothing is another
     std::vector<std::uint32_t> all;
     std::set_union(recolored_.begin(), recolored_.end(), changed.begin(), changed.end(),
                    std::back_inserter(all));

@@ -77,7 +77,7 @@ class EditedCanvas {
     };
 
     [[nodiscard]] Likeness likeness(const PictureRequest& before, const PictureRequest& now) const;
-    void take_colors(const Scene& scene);
+    void take_colors(const Scene& scene, bool same_light);
     [[nodiscard]] bool take_scene(const Scene* before, const Scene& scene, const Likeness& same);
     void compile_anew(const Scene& scene);
     void lay_out(WindowSize size);

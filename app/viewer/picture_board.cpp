@@ -51,8 +51,9 @@ void PictureBoard::fail(std::uint64_t new_number, const std::string& why) {
 }
 
 void PictureBoard::expect(const std::vector<std::uint8_t>& selected,
-                          const std::vector<std::uint8_t>& kept, bool job_traces) {
+                          const std::vector<std::uint8_t>& kept, bool job_traces, bool to_be_seen) {
     tracing_ = job_traces;
+    to_be_seen_ = to_be_seen;
     tally.expect(selected, kept);
 }
 
@@ -61,14 +62,16 @@ void PictureBoard::expect(const std::vector<std::uint8_t>& selected,
 std::uint64_t PictureBoard::take(const TileNotice& notice, const Canvas& canvas) {
     const TileState& tile = canvas.tiles[notice.tile];
     const PixelRect& rect = notice.rect;
+    const bool stays = !to_be_seen_ && is_sampled_[notice.tile] != 0;
     // A job that was cancelled may have painted empty tiles and told nobody.
     const std::size_t corner = canvas.frame.at(rect.x0, rect.y0);
     if (!notice.same || color_[corner] != canvas.frame.color[corner]) {
-        for (int j = rect.y0; j < rect.y1; ++j)
-            take_row(canvas.frame, canvas.frame.at(rect.x0, j), rect.width(), tile.empty);
-        if (is_changed_[notice.tile] == 0) changed_.push_back(notice.tile);
-        is_changed_[notice.tile] |= tracing_ ? 3 : 1;
-        is_sampled_[notice.tile] = 0;
+        if (!stays) {
+            take_colors(rect, canvas, canvas.frame.color);
+            is_sampled_[notice.tile] = 0;
+        }
+        if (tracing_) take_depth(rect, canvas, tile.empty);  // else it is what it was
+        has_changed(notice.tile, tracing_ ? 3 : 1);
     }
     if (is_here_[notice.tile] == 0) {
         is_here_[notice.tile] = 1;
@@ -78,21 +81,35 @@ std::uint64_t PictureBoard::take(const TileNotice& notice, const Canvas& canvas)
     return tally.take(notice.tile, tile, tracing_);
 }
 
-void PictureBoard::take_row(const Frame& frame, std::size_t first, int count, bool misses) {
-    const auto columns = static_cast<std::size_t>(count);
-    std::copy_n(&frame.color[first], columns, &color_[first]);
-    if (!tracing_) return;  // the depth is what it was
-    std::fill_n(&depth_[first], columns, std::numeric_limits<float>::infinity());
-    if (misses) return;
-    for (std::size_t p = first; p < first + columns; ++p)
-        if (possibly_hit(frame.status[p])) depth_[p] = static_cast<float>(midpoint(frame.t(p)));
+void PictureBoard::take_colors(const PixelRect& rect, const Canvas& canvas,
+                               const Plane<Rgba8>& color) {
+    for (int j = rect.y0; j < rect.y1; ++j) {
+        const std::size_t first = canvas.frame.at(rect.x0, j);
+        std::copy_n(&color[first], rect.width(), &color_[first]);
+    }
+}
+
+void PictureBoard::take_depth(const PixelRect& rect, const Canvas& canvas, bool misses) {
+    const Frame& frame = canvas.frame;
+    const auto columns = static_cast<std::size_t>(rect.width());
+    for (int j = rect.y0; j < rect.y1; ++j) {
+        const std::size_t first = frame.at(rect.x0, j);
+        std::fill_n(&depth_[first], columns, std::numeric_limits<float>::infinity());
+        if (misses) continue;
+        for (std::size_t p = first; p < first + columns; ++p)
+            if (possibly_hit(frame.status[p])) depth_[p] = static_cast<float>(midpoint(frame.t(p)));
+    }
+}
+
+void PictureBoard::has_changed(std::size_t tile, std::uint8_t what) {
+    if (is_changed_[tile] == 0) changed_.push_back(tile);
+    is_changed_[tile] |= what;
 }
 
 void PictureBoard::take_samples(const TileNotice& notice, const Canvas& canvas,
                                 const SampledPicture& sampled) {
     take_colors(notice.rect, canvas, sampled.color);
-    if (is_changed_[notice.tile] == 0) changed_.push_back(notice.tile);
-    is_changed_[notice.tile] |= 1;
+    has_changed(notice.tile, 1);
     is_sampled_[notice.tile] = 1;
     tally.name_anew(notice.tile, sampled.pixels[notice.tile]);
 }
@@ -101,18 +118,15 @@ void PictureBoard::leave_samples(const Canvas& canvas) {
     for (std::size_t tile = 0; tile < is_sampled_.size(); ++tile) {
         if (std::exchange(is_sampled_[tile], std::uint8_t{0}) == 0) continue;
         take_colors(canvas.grid.tiles.rect(tile), canvas, canvas.frame.color);
-        if (is_changed_[tile] == 0) changed_.push_back(tile);
-        is_changed_[tile] |= 1;
+        has_changed(tile, 1);
         tally.name_anew(tile, canvas.tiles[tile].pixels);
     }
 }
 
-void PictureBoard::take_colors(const PixelRect& rect, const Canvas& canvas,
-                               const Plane<Rgba8>& color) {
-    for (int j = rect.y0; j < rect.y1; ++j) {
-        const std::size_t first = canvas.frame.at(rect.x0, j);
-        std::copy_n(&color[first], rect.width(), &color_[first]);
-    }
+std::vector<std::uint8_t> PictureBoard::without_samples() const {
+    std::vector<std::uint8_t> tiles(is_sampled_.size());
+    for (std::size_t tile = 0; tile < tiles.size(); ++tile) tiles[tile] = is_sampled_[tile] == 0;
+    return tiles;
 }
 
 void PictureBoard::take_coarse(CoarsePicture&& picture) {

@@ -1,6 +1,6 @@
 // The board: the picture in the making, between the workers, who put finished tiles on it, and the
 // window, which takes what may be seen of it: all of a picture or nothing, and tile by tile only what
-// takes the place of a coarse picture of the same scene and camera.
+// takes the place of a coarser one of the same scene and camera.
 #pragma once
 
 #include <chrono>
@@ -42,9 +42,10 @@ class PictureBoard {
                const std::vector<std::uint8_t>& missing, bool surface_empty);
     // There is no picture of that request, and that is why.
     void fail(std::uint64_t new_number, const std::string& why);
-    // A job begins that makes these tiles anew; those of `kept` show what is not this picture's.
+    // A job begins that makes these tiles anew; those of `kept` show what is not this picture's. Unless it
+    // is to be seen, tiles of several samples a pixel keep their colours.
     void expect(const std::vector<std::uint8_t>& selected, const std::vector<std::uint8_t>& kept,
-                bool job_traces);
+                bool job_traces, bool to_be_seen = true);
     // What a worker has made of a tile. How many more of its pixels are there now.
     std::uint64_t take(const TileNotice& notice, const Canvas& canvas);
     // The tile with several samples a pixel, in place of what it was; and all that are so as they were
@@ -52,6 +53,8 @@ class PictureBoard {
     void take_samples(const TileNotice& notice, const Canvas& canvas,
                       const SampledPicture& sampled);
     void leave_samples(const Canvas& canvas);
+    // Not 0 for tiles that have but one.
+    [[nodiscard]] std::vector<std::uint8_t> without_samples() const;
     // All of the picture in fewer pixels: it is what is seen.
     void take_coarse(CoarsePicture&& picture);
     // From now on the tiles that are there are seen in place of the coarse picture.
@@ -73,7 +76,8 @@ class PictureBoard {
 
     void lay_out(WindowSize size, std::size_t tiles);
     void take_colors(const PixelRect& rect, const Canvas& canvas, const Plane<Rgba8>& color);
-    void take_row(const Frame& frame, std::size_t first, int count, bool misses);
+    void take_depth(const PixelRect& rect, const Canvas& canvas, bool misses);
+    void has_changed(std::size_t tile, std::uint8_t what);
     bool hand_over_tile(const PixelRect& rect, bool with_depth, ShownPicture& shown) const;
     void set_fine(std::vector<std::uint8_t>& fine) const;
 
@@ -86,6 +90,7 @@ class PictureBoard {
     std::vector<std::size_t> changed_;      // tiles since they were handed over, each once
     std::vector<std::uint8_t> is_changed_;  // by tile: 1: its colours, 3: its depth too
     bool tracing_ = false;                  // false: only shaded anew
+    bool to_be_seen_ = true;                // what the job makes
     Seen seen_ = Seen::nothing;
     CoarsePicture coarse_;  // as long as something of it is seen
     bool coarse_is_handed_over_ = false;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/render/canvas.h"
@@ -36,13 +37,8 @@ class TileTally {
     // The tile is so now. How many more of its pixels are there.
     std::uint64_t take(std::size_t tile, const TileState& now, bool traced) {
         if (traced && own_[tile] == 0) ++tiles_traced_;
-        int sum = 0;
-        for (std::size_t status = 0; status < statuses_.size(); ++status) {
-            statuses_[status] += now.pixels[status];
-            statuses_[status] -= tile_statuses_[tile][status];
-            sum += now.pixels[status];
-        }
-        tile_statuses_[tile] = now.pixels;
+        name_anew(tile, now.pixels);
+        const int sum = std::accumulate(now.pixels.begin(), now.pixels.end(), 0);
         const auto more = static_cast<std::uint64_t>(sum - own_[tile]);
         own_[tile] = static_cast<std::uint16_t>(sum);
         pixels_ += more;

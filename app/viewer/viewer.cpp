@@ -346,9 +346,9 @@ void Viewer::frame(const Input& input) {
     parts.record.asked = parts.ask_for_picture(input, start);
     if (parts.record.asked) {
         parts.wait_for_picture(parts.due(start));
-        parts.take_picture();
     }
     const Clock::time_point pictured = Clock::now();
+    if (parts.record.asked) parts.take_picture();
     if (!parts.overlay_hidden && state.skeleton_shown) parts.draw_over_picture();
     ImGui::Render();
     parts.draw(input);

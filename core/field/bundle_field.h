@@ -90,9 +90,11 @@ class BundleField {
     // And how it changes across the rays, per scene unit and its square.
     [[nodiscard]] AcrossSums bound_across(const BundlePart& part, double t0, double t1,
                                           const Bounded& bounded) const;
-    // The same of the window that is open.
+    // The same of the window that is open, from the stretch that it was bounded on: what is kinked there is
+    // kinked here.
     [[nodiscard]] AcrossSums bound_across() const {
-        return bound_across(opened_part_, opened_on_.begin, opened_on_.end, *opened_);
+        const double pad = pad_of(opened_on_.begin, opened_on_.end);
+        return bound_across(opened_part_, opened_on_.begin - pad, opened_on_.end + pad, *opened_);
     }
 
     // The window of what was bounded so, which stays where it is.

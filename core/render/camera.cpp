@@ -30,9 +30,7 @@ double origin_error(const View& view, double reach) {
 }  // namespace
 
 Vec3d through_window(const View& view, double u, double v) {
-    const Vec3d through = view.forward + u * view.right + v * view.top;
-    if (!view.is_eye()) return through;
-    return view.window_distance * through + view.window_shift * view.right;
+    return view.forward + u * view.right + v * view.top;
 }
 
 Vec3d origin_on_plane(const View& view, double u, double v) {
@@ -56,9 +54,9 @@ View eye_of(const View& view, Eye eye, double apart) {
     View of_eye = view;
     const double to_right = eye == Eye::right ? apart / 2 : -apart / 2;
     of_eye.origin = view.camera.position + to_right * view.right;
-    of_eye.window_distance = length(view.camera.target - view.camera.position);
-    of_eye.window_shift = -to_right;
-    if (!(apart > 0) || !finite(of_eye.origin) || of_eye.origin == view.camera.position) {
+    of_eye.shift = -to_right / length(view.camera.target - view.camera.position);
+    if (!(apart > 0) || !finite(of_eye.origin) || !std::isfinite(of_eye.shift) ||
+        of_eye.origin == view.camera.position) {
         throw Error("camera: its eyes are lost to rounding; move them farther apart");
     }
     return of_eye;
@@ -83,7 +81,7 @@ View make_view(const Camera& camera) {
 }
 
 double plane_u(const View& view, int width, int height, int i) {
-    return (2 * (i + 0.5) / width - 1) * view.s * width / height;
+    return (2 * (i + 0.5) / width - 1) * view.s * width / height + view.shift;
 }
 
 double plane_v(const View& view, int height, int j) {
@@ -112,10 +110,6 @@ Ray primary_ray(const View& view, int width, int height, int i, int j) {
 // off by less than 12 e. Together that is below 32 e; the margin is 128 e, and sin(a + b) <= sin a
 // + b.
 //
-// An eye's vector is z times that and shift right: z (forward + (u + shift / z) right + v top), a
-// point of the same plane; its two roundings more are e of a sum that is 1 + |shift| / z times as large
-// at the most.
-//
 // An orthographic camera's origins lie in the parallelogram of the corners' exact places, but for
 // `origin_error`.
 Cone cone_around(const View& view, int width, int height, const PixelRect& rect) {
@@ -123,9 +117,7 @@ Cone cone_around(const View& view, int width, int height, const PixelRect& rect)
         const Bundle bundle = bundle_around(view, width, height, rect);
         return {bundle.origin, bundle.axis, bundle.spread, bundle.radius};
     }
-    const double margin =
-        128 * 0x1p-53 *
-        (view.is_eye() ? 1 + std::abs(view.window_shift) / view.window_distance : 1);
+    constexpr double margin = 128 * 0x1p-53;
     constexpr double every_direction = 2;
     const double u[2] = {plane_u(view, width, height, rect.x0),
                          plane_u(view, width, height, rect.x1 - 1)};
@@ -165,8 +157,8 @@ Bundle orthographic_bundle(const View& view, double u0, double u1, double v0, do
     const double error = origin_error(
         view, std::max(std::abs(u0), std::abs(u1)) + std::max(std::abs(v0), std::abs(v1)));
     bundle.radius = bundle.radius * (1 + 0x1p-40) + error + std::numeric_limits<double>::min();
-    // forward . right and forward . top are below 8 e
-    bundle.spread = 0x1p-48 + error / bundle.radius;
+    // Where `up` is nearly along the view forward and right are not quite orthogonal.
+    bundle.spread = 0x1p-48 + 2 * std::abs(dot(view.forward, view.right)) + error / bundle.radius;
     return bundle;
 }
 

@@ -24,14 +24,12 @@ struct View {
     // Where the rays begin or, of an orthographic camera, the middle of the plane where they do: the
     // camera's position, or that of an eye.
     Vec3d origin;
-    // Of an eye: the distance of the window that both eyes look through, and how far to the right that
-    // stands of it. 0: not an eye.
-    double window_distance = 0, window_shift = 0;
+    // Of an eye: how far to the right of its line of sight, at distance 1, the middle of the picture stands.
+    double shift = 0;
 
     [[nodiscard]] bool is_orthographic() const {
         return camera.projection == Camera::Projection::orthographic;
     }
-    [[nodiscard]] bool is_eye() const { return window_distance > 0; }
 };
 
 // Throws Error where the camera has a fault (core/scene/scene_fault.h) or its frame is lost to
@@ -53,10 +51,10 @@ enum class Eye : std::uint8_t { left, right };
 // The ray through the middle of pixel (i, j), j counted from the top, of a picture of
 // width x height:
 //   direction = normalize(forward + u right + v top)
-//   u = (2 (i + 0.5)/W - 1) s W/H,  v = (1 - 2 (j + 0.5)/H) s
-// of an eye, with z the window's distance,
-//   direction = normalize(z (forward + u right + v top) + shift right)
-// and of an orthographic camera direction = forward, origin = position + u right + v top.
+//   u = (2 (i + 0.5)/W - 1) s W/H + shift,  v = (1 - 2 (j + 0.5)/H) s
+// and of an orthographic camera direction = forward, origin = position + u right + v top. With eyes D
+// apart and the window that both look through at distance z, that is normalize(z (forward + u0 right +
+// v top) + (D/2) right) for the left one, whose shift is D/2 / z.
 [[nodiscard]] Ray primary_ray(const View& view, int width, int height, int i, int j);
 
 // Where that ray passes the plane at distance 1 before the camera, or an orthographic one's own, the

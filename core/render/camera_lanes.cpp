@@ -22,15 +22,11 @@ using V = hn::Vec<D>;
 void directions_of_target(const View& view, std::size_t count, const double* us, const double* vs,
                           double* dx, double* dy, double* dz) {
     const D d;
-    const V window = hn::Set(d, view.window_distance), shift = hn::Set(d, view.window_shift);
-    const bool is_eye = view.is_eye();
     for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
         const V u = hn::LoadU(d, us + k), v = hn::LoadU(d, vs + k);
         const auto component = [&](double forward, double right, double top) HWY_ATTR {
-            const V through = hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
-                                      hn::Mul(v, hn::Set(d, top)));
-            if (!is_eye) return through;
-            return hn::Add(hn::Mul(window, through), hn::Mul(shift, hn::Set(d, right)));
+            return hn::Add(hn::Add(hn::Set(d, forward), hn::Mul(u, hn::Set(d, right))),
+                           hn::Mul(v, hn::Set(d, top)));
         };
         const V x = component(view.forward.x, view.right.x, view.top.x);
         const V y = component(view.forward.y, view.right.y, view.top.y);
@@ -122,10 +118,7 @@ TileBundles tile_bundles(const View& view, int width, int height, int i, int j, 
                                                   direction(last), direction(last + side - 1)});
     });
     // As cone_around has it: the claims about rounding are for frames that are not skewed.
-    const bool is_skewed = !(std::abs(dot(view.forward, view.right)) <= 0.5);
-    // An eye's vectors may cancel (cone_around).
-    const bool is_aside = std::abs(view.window_shift) > 16 * view.window_distance;
-    if (is_skewed || is_aside) {
+    if (!(std::abs(dot(view.forward, view.right)) <= 0.5)) {
         for (Bundle& skewed : bundles) skewed.spread = 1;
     }
     return bundles;

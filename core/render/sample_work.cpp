@@ -86,6 +86,9 @@ void SampleWorker::take_certain(const ElementList& list) {
     surfaces_.exact = false;
     picture_.method->certify_bundle(*picture_.field, list, rays_.rays, footprint(),
                                     picture_.options, isolations_, surfaces_, counts_);
+    const auto status = isolations_.status.begin();
+    const auto end = status + static_cast<std::ptrdiff_t>(rays_.size());
+    if (std::find(status, end, Status::hit) == end) return;
     light_lanes(picture_.lighting, rays_.rays, surfaces_, rays_.size(), light_);
 }
 

@@ -77,6 +77,7 @@ class Foot {
         constexpr int most_steps = 60;
         for (int step = 0; step < most_steps; ++step) {
             const double g = value(x);
+            if (g == 0) return x;
             double slope = 5 * c[5];
             for (std::size_t k = 5; k-- > 1;) slope = static_cast<double>(k) * c[k] + x * slope;
             (g > 0 ? a : b) = x;
@@ -187,7 +188,7 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         Span x;
         double least;
     };
-    constexpr std::size_t most_leaves = 32, most_halvings = 512, deepest = 56;
+    constexpr std::size_t most_leaves = 32, most_halvings = 512, most_open = 56;
     std::array<Leaf, most_leaves> leaves;
     std::size_t leaf_count = 0;
     double best = infinity<double>;
@@ -199,8 +200,9 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
                 if (leaves[k].least <= best) leaves[kept++] = leaves[k];
             }
             if (kept == leaf_count) {
-                leaves[--kept - 1] = {hull(leaves[kept].x, leaves[kept - 1].x),
-                                      std::min(leaves[kept].least, leaves[kept - 1].least)};
+                const Leaf &last = leaves[kept - 1], &before = leaves[kept - 2];
+                leaves[kept - 2] = {hull(last.x, before.x), std::min(last.least, before.least)};
+                --kept;
             }
             leaf_count = kept;
         }
@@ -215,7 +217,7 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
     struct Part {
         double a, b;
     };
-    std::array<Part, deepest + 2> open;  // one for each halving on the way down
+    std::array<Part, most_open + 2> open;
     std::size_t open_count = 0, halvings = 0;
     open[open_count++] = {-1, 1};
     while (open_count > 0) {
@@ -253,7 +255,7 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
             if (least > best) continue;
             // Where D is flat, about a centre of curvature or for an arc that is small beside |v|, halves
             // soon say no more than rounding has left.
-            if (gain.hi <= 2 * (square.hi - square.lo) || open_count >= deepest ||
+            if (gain.hi <= 2 * (square.hi - square.lo) || open_count >= most_open ||
                 ++halvings > most_halvings) {
                 leave(x, least);
                 continue;

@@ -87,7 +87,7 @@ struct PolygonSkeleton {
     static bool along_ray(const SkeletonColumns& c, double width, const SeenFrom& ray,
                           SkeletonAlongRay& e) {
         const BallAlongRay around(ball(c), width, ray);
-        if (!around.fits) return false;
+        if (!around.fits || !(c.parameter < 1e75)) return false;
         e.form = ConvexAlongRay{c.a, ray.origin, ray.direction, width, c.parameter, c.numbers};
         e.active = around.active(ray.cut);
         return true;

@@ -15,12 +15,12 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 namespace {
 
-// f in the middle, grad f of what is neither joined nor kinked there, and the slope of f, of which that
-// of the joined is a guess.
+// f in the middle, grad f of what is neither joined nor kinked there, its slope along the ray, and that with
+// a guess of what is joined.
 struct Middle {
     V<F> f;
     Vec3v<F> gradient;
-    V<F> slope;
+    V<F> known_slope, slope;
 };
 
 template <Shape shape, KernelKind kind>
@@ -46,8 +46,9 @@ HWY_INLINE void add_middle(F d, const BundleEntry<float>* entry, std::uint32_t c
         const KernelValue<F> value = LanesOf<kind>::at(d, s);
         sum.f = hn::MulAdd(hn::Set(d, entry->strength), value.k, sum.f);
         const V<F> slope = hn::Mul(full, value.dk);
-        sum.slope = hn::MulAdd(slope, dot<F>(away, direction), sum.slope);
-        if constexpr (!SkeletonOf<shape>::is_joined) {
+        if constexpr (SkeletonOf<shape>::is_joined) {
+            sum.slope = hn::MulAdd(slope, dot<F>(away, direction), sum.slope);
+        } else {
             sum.gradient = {hn::MulAdd(slope, away.x, sum.gradient.x),
                             hn::MulAdd(slope, away.y, sum.gradient.y),
                             hn::MulAdd(slope, away.z, sum.gradient.z)};
@@ -70,7 +71,7 @@ struct FootprintStage {
         const Vec3v<F> p{hn::MulAdd(tau, rays.direction.x, rays.middle.x),
                          hn::MulAdd(tau, rays.direction.y, rays.middle.y),
                          hn::MulAdd(tau, rays.direction.z, rays.middle.z)};
-        Middle sum{hn::Set(d, -threshold), {zero, zero, zero}, zero};
+        Middle sum{hn::Set(d, -threshold), {zero, zero, zero}, zero, zero};
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t first,
                                                                  std::uint32_t count) HWY_ATTR {
@@ -78,6 +79,8 @@ struct FootprintStage {
                                         sum);
             });
         }
+        sum.known_slope = dot<F>(sum.gradient, rays.direction);
+        sum.slope = hn::Add(sum.slope, sum.known_slope);
         return sum;
     }
     // |f(p') - f(p)| for p' of another ray at the same t: the gradient's part and that of the second
@@ -144,7 +147,7 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
             const V<F> f_hi = hn::Add(hn::Add(middle.f, hn::Set(d, stage.above)), lateral);
             const M<F> below = hn::And(walking, hn::Lt(f_hi, zero));
             undecided = hn::Or(undecided, hn::AndNot(below, walking));
-            const V<F> slope_hi = hn::Add(dot<F>(middle.gradient, rays.direction), more_slope);
+            const V<F> slope_hi = hn::Add(middle.known_slope, more_slope);
             const V<F> safe =
                 hn::MulSub(parabola_zero(d, f_hi, slope_hi, rise), c(1 - Margin::rough), slack);
             // Close enough that a root is the likelier end.
@@ -178,7 +181,7 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
             tau = hn::IfThenElse(enters, begin, tau);
             inside = hn::IfThenElse(enters, begin, inside);
             f_inside = hn::IfThenElse(found, middle.f, f_inside);
-            f_near = hn::IfThenElse(onward, middle.f, f_near);
+            f_near = hn::IfThenElse(enters, middle.f, f_near);
             slope_near = hn::IfThenElse(onward, middle.slope, slope_near);
             lateral_near = hn::IfThenElse(onward, lateral, lateral_near);
             near = hn::Or(near, onward);
@@ -211,6 +214,8 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
         // steps, kept between.
         const M<F> crosses = hn::And(hn::And(hn::Or(found, at_end), near),
                                      hn::And(hn::Lt(f_near, zero), hn::Gt(f_inside, zero)));
+        // Or rounding had it in the window before and here.
+        const M<F> begins = hn::And(enters, hn::Ge(f_near, zero));
         V<F> root = begin;
         if (!hn::AllFalse(d, crosses)) {
             const V<F> share = hn::Div(hn::Neg(f_near), hn::Sub(f_inside, f_near));
@@ -242,12 +247,11 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
         }
         const std::uint64_t found_bits = bits_of(d, found), undecided_bits = bits_of(d, undecided),
                             taken_bits = bits_of(d, taken), enters_bits = bits_of(d, enters),
-                            end_bits = bits_of(d, at_end), crosses_bits = bits_of(d, crosses);
+                            end_bits = bits_of(d, at_end), crosses_bits = bits_of(d, crosses),
+                            begins_bits = bits_of(d, begins);
         constexpr std::size_t lanes_at_most = HWY_MAX_BYTES / sizeof(float);
-        alignas(64) float at[lanes_at_most], from[lanes_at_most], f_from[lanes_at_most];
+        alignas(64) float at[lanes_at_most];
         hn::Store(root, d, at);
-        hn::Store(tau, d, from);
-        hn::Store(f_near, d, f_from);
         for (std::size_t k = 0; k < N && first + k < end_lane; ++k) {
             const std::size_t lane = first + k;
             const auto is = [&](std::uint64_t bits) { return (bits >> k & 1) != 0; };
@@ -258,11 +262,7 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
                 continue;
             }
             if (!is(found_bits) && !is(end_bits)) continue;  // walks on
-            if (!is(enters_bits)) {
-                entering.t[lane] = window.middle + double{from[k]} * unit;
-                entering.f[lane] = f_from[k];
-                entering.seen[lane] = 0;
-            }
+            if (!is(enters_bits)) entering.seen[lane] = 0;
             entering.end[lane] = window.end;
             entering.pending[lane] = is(found_bits) ? 0 : 1;
             if (entering.seen[lane] != 0) {
@@ -270,7 +270,7 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
                 continue;
             }
             // The root is in this window, or was at its very begin.
-            if (is(found_bits) || is(crosses_bits)) {
+            if (is(found_bits) || is(crosses_bits) || is(begins_bits)) {
                 entering.seen[lane] = 1;
                 state = Lanes::hit;
                 lanes.t[lane] = std::clamp(window.middle + double{at[k]} * unit, window.begin,

@@ -4,6 +4,8 @@
 // Let p(t) be the middle ray's point, p'(t) another's, |p' - p| <= rho(t) = radius + t spread. With H
 // a bound of f's second derivatives in any direction over all places of the window within the bundle,
 //     |f(p') - f(p)| <= rho |grad f(p)| + H rho^2 / 2 = lateral(p),
+// (between two rays that are `spread` apart the way to a skeleton is shorter than theirs by spread^2 / 4 of
+// what they may be aside, which is less than `lateral` is widened by as long as spread <= 1 / 16)
 // where of elements without second derivatives (kinks; joined parts) their greatest slope counts in
 // place of a gradient. Where f + lateral < 0 on [0, t0] and f - lateral > 0 at t1 > t0 all of the pixel's
 // rays have their first root in [t0, t1]; where f + lateral < 0 for all t all are misses. From one place to
@@ -11,16 +13,14 @@
 // it stays below f + lateral + (f' + rho H + the slopes of what has no gradient) t + rise t^2 / 2.
 #pragma once
 
-#include <array>
-#include <cstdint>
-
 #include "core/field/bundle_steps.h"
-#include "core/trace/ray_bundle.h"
 
 namespace ivory {
 
 // How far the pixel's rays are from the middle one at most: |o' - o| <= radius, |d' - d| <= spread.
 struct Footprint {
+    static constexpr double widest = 1.0 / 16;  // spreads that the bounds are for
+
     double spread = 0, radius = 0;
 };
 
@@ -28,15 +28,6 @@ struct Footprint {
 struct FootprintBounds {
     double rho = 0;  // up to the window's end
     AcrossSums across;
-};
-
-// Of lanes on their way in from one window to the next: no ray of the pixel has a root before t, where the
-// middle's f is negative; up to the last window's end not all of them were certainly inside.
-struct EnteringRays {
-    static constexpr std::size_t room = RayBundle::room;
-    std::array<double, room> t, f, end;
-    std::array<std::uint8_t, room> seen;     // the middle's root is behind, and has been looked at
-    std::array<std::uint8_t, room> pending;  // see PacketSteps::certify
 };
 
 }  // namespace ivory

@@ -143,8 +143,9 @@ void PacketTracer::certify(const Field& field, const ElementList& list, const Ra
         std::fill_n(isolations.status.begin(), rays.count, Status::unresolved);
     };
     surfaces.clear(rays.count);
-    if (!descent_.build(field, list, rays.bundle, settings.tolerance, true, rays.common,
-                        &counts.stop)) {
+    if (footprint.spread > Footprint::widest ||
+        !descent_.build(field, list, rays.bundle, settings.tolerance, settings.skipping.windows,
+                        rays.common, &counts.stop)) {
         leave_all();
         return;
     }

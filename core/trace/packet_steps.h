@@ -45,6 +45,15 @@ struct Lanes {
     alignas(64) std::array<double, room> t;  // of a candidate; of a hit the midpoint
 };
 
+// Of lanes on their way in from one window to the next: no ray of the pixel has a root before the middle's
+// came near; up to `end`, the last window's, not all of them were certainly inside.
+struct EnteringRays {
+    static constexpr std::size_t room = RayBundle::room;
+    std::array<double, room> end;
+    std::array<std::uint8_t, room> seen;     // the middle's root is behind, and has been looked at
+    std::array<std::uint8_t, room> pending;  // see PacketSteps::certify
+};
+
 // How many lanes were to be looked at, and of how many the surface is known now.
 struct SeenSurfaces {
     std::size_t wanted = 0, known = 0;

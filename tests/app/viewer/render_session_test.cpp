@@ -100,9 +100,11 @@ class Session : public testing::Test {
     // How long a first picture may take: by default so long that it is one of every pixel.
     std::chrono::milliseconds budget{60'000};
 
+    int samples = 1;  // a side
+
     void show(const SceneValue& scene, const Camera& c = camera(), WindowSize picture_size = size) {
         const Clock::time_point now = Clock::now();
-        session.show({scene, c, picture_size, std::nullopt, now, now + budget});
+        session.show({scene, c, picture_size, std::nullopt, now, now + budget, samples});
     }
     // False after a minute.
     bool wait_until(const std::function<bool()>& done) {
@@ -336,6 +338,75 @@ TEST_F(Session, CoarsePicturesOfEditsThatOvertakeEachOtherEndAsRender) {
         SCOPED_TRACE("round " + std::to_string(round));
         expect_as_render(scene, camera());
     }
+}
+
+// What an edit does not touch keeps its bytes all the while, though the hierarchy is made anew and every
+// pixel's samples are looked for again.
+TEST_F(Session, SampledTilesKeepTheirBytesThroughAnEdit) {
+    samples = 4;
+    show(with_left_blob_at(-1.2));
+    ASSERT_TRUE(wait_final());
+    const std::vector<Rgba8> before = session.shown().color;
+    show(with_left_blob_at(-1.15));
+    std::vector<std::uint8_t> changed(before.size());
+    ASSERT_TRUE(wait_until([&] {
+        session.poll();
+        for (std::size_t p = 0; p < before.size(); ++p)
+            changed[p] |= session.shown().color[p] != before[p];
+        return session.state().final;
+    }));
+    // The right blob has no pixel in the left half, the left one none in the right third.
+    std::size_t flickering = 0, kept_edges = 0;
+    const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * size.width + i); };
+    for (int j = 0; j < size.height; ++j) {
+        for (int i = 2 * size.width / 3 + TileGrid::tile_side; i < size.width; ++i) {
+            flickering += changed[at(i, j)] != 0;
+            kept_edges += before[at(i, j)] != before[at(i - 1, j)];
+        }
+    }
+    EXPECT_EQ(flickering, 0u);
+    EXPECT_GT(kept_edges, 100u);
+    EXPECT_GT(std::count(changed.begin(), changed.end(), 1), 100);
+}
+
+TEST_F(Session, AnotherNumberOfSamplesTracesNothingAnewAndComesBack) {
+    const auto scene = std::make_shared<const Scene>(two_blobs());
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    const std::vector<Rgba8> sharp = session.shown().color;
+    const std::uint64_t traced = session.totals().tiles_traced;
+    samples = 2;
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_NE(session.shown().color, sharp);
+    samples = 1;
+    show(scene);
+    ASSERT_TRUE(wait_final());
+    EXPECT_EQ(session.totals().tiles_traced, traced);
+    expect_as_render(*scene);
+}
+
+// An edit that comes while samples are being taken leaves nothing of the old picture.
+TEST_F(Session, AnEditWhileSamplesComeEndsAsItWould) {
+    samples = 4;
+    for (int round = 0; round < 4; ++round) {
+        show(with_left_blob_at(-1.2 + 0.1 * round));
+        ASSERT_TRUE(wait_first());
+        const Clock::time_point until = Clock::now() + std::chrono::milliseconds(110 + 3 * round);
+        ASSERT_TRUE(wait_until([&] {
+            session.poll();
+            return Clock::now() > until || session.state().final;
+        }));
+    }
+    ASSERT_TRUE(wait_final());
+    const std::vector<Rgba8> after = session.shown().color;
+    samples = 1;
+    show(with_left_blob_at(-0.9));
+    ASSERT_TRUE(wait_final());
+    samples = 4;
+    show(with_left_blob_at(-0.9));
+    ASSERT_TRUE(wait_final());
+    EXPECT_TRUE(session.shown().color == after);
 }
 
 TEST_F(Session, TheOldPictureStaysUntilTheNewOneIsComplete) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -46,6 +47,21 @@ TEST(Resolution, TheFinestThatIsInTimeIsFoundAndKept) {
         EXPECT_GT(seconds_of(step - 1, full), 0.55 * budget) << full;
         EXPECT_LE(changes, 4) << full;
     }
+}
+
+// The first picture found nothing warm; what is quick enough once it is comes back.
+TEST(Resolution, ASlowBeginningIsForgotten) {
+    Resolution resolution;
+    ASSERT_EQ(resolution.choose(whole, 0.02, false), 0u);
+    resolution.learn(0, whole, 0.06);
+    std::size_t step = 0, most = 0;
+    for (int picture = 0; picture < 200; ++picture) {
+        step = resolution.choose(whole, 0.02, picture > 0);
+        most = std::max(most, step);
+        resolution.learn(step, whole, step == 0 ? 0.008 : 0.008 / resolution_steps[step]);
+    }
+    EXPECT_GT(most, 0u);
+    EXPECT_EQ(step, 0u);
 }
 
 TEST(Resolution, OneLatePictureChangesNothing) {

@@ -800,7 +800,7 @@ JobSettings sampling(SampledPicture& sampled, int threads = 1) {
 TEST(Render, SeveralSamplesArePromisedMeans) {
     Scene orthographic = mixed_scene();
     orthographic.camera->projection = Camera::Projection::orthographic;
-    std::size_t middles = 0, apart = 0, mixed = 0;
+    std::size_t pixels = 0, apart = 0, mixed = 0, mixed_apart = 0;
     for (const Scene& scene :
          {mixed_scene(), orthographic, tools::random_scene({.elements = 12}, 5),
           tools::random_scene({.elements = 40}, 8)}) {
@@ -819,22 +819,24 @@ TEST(Render, SeveralSamplesArePromisedMeans) {
                 const int off = most_apart(sampled.color[p], mean.color[p]);
                 ASSERT_LE(off, 1) << p % frame_width << ", " << p / frame_width;
                 apart += off != 0;
-                if (samples[p].status.size() > 1) {
-                    ++mixed;
-                    // but for what float leaves of a sum near a byte's edge
-                    ASSERT_LE(off, 1);
-                }
+                if (samples[p].status.size() < 2) continue;
+                ++mixed;
+                mixed_apart += off != 0;
             }
-            middles += samples.size();
+            pixels += samples.size();
             EXPECT_EQ(sampled.pixels.size(), mean.pixels.size());
             for (std::size_t tile = 0; tile < mean.pixels.size(); ++tile) {
                 ASSERT_EQ(sampled.pixels[tile], mean.pixels[tile]) << tile;
             }
         }
     }
-    std::printf("%zu pixels, %zu of mixed status, %zu a byte away\n", middles, mixed, apart);
+    std::printf("%zu pixels, %zu a byte away; %zu of mixed status, %zu a byte away\n", pixels,
+                apart, mixed, mixed_apart);
     EXPECT_GT(mixed, 1000u);
-    EXPECT_LT(apart, middles / 50);
+    EXPECT_LT(apart, pixels / 50);
+    // What float leaves of a sum near a byte's edge: the lists, and so the windows, are not the larger
+    // picture's.
+    EXPECT_LT(mixed_apart, mixed / 50);
 }
 
 // Most pixels are known from fewer samples, and no thread, tile or order is seen in what comes out.
@@ -871,7 +873,7 @@ TEST(Render, SeveralSamplesCostFewMore) {
     }
 }
 
-// The least t of all samples, on the canvas of an orthographic camera too.
+// The least t of all samples.
 TEST(Render, TheDepthOfSamplesIsTheLeast) {
     const Picture picture = picture_of(mixed_scene());
     Canvas canvas(frame_width, frame_height, false),
