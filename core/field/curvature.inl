@@ -27,6 +27,10 @@ HWY_INLINE V<Tag> steepest(Tag d, const Seen<Tag, shape>& e, V<Tag> least, V<Tag
         hn::Mul(hn::Set(d, 2 * Margin::more * Margin::more), LanesOf<kind>::slope(d, least, peak)));
 }
 
+// Kinks that each ray may prove to be none of its own count so much beside others, where stretches are to be
+// halved: less leaves more to single rays, more makes more windows (curves-1000).
+constexpr double proved_kinks_count = 0x1p-4;
+
 // Adds the bends of some elements; returns the circles' bound of 1 / rho.
 template <KernelKind kind, class Tag, Shape shape>
 HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
@@ -43,11 +47,19 @@ HWY_INLINE V<Tag> add_bends(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Ta
         const Turning<Tag> turning = LanesOfShape<shape>::turning(e, s, error, most);
         inverse = turning.inverse;
         outward = turning.outward;
-        smooth = hn::And(smooth, hn::Ge(inverse, zero));
-        // no f'' is known of the others
-        const V<Tag> slope = steepest<kind>(d, e, least, peak);
-        sums.kinked_slope =
-            hn::Add(sums.kinked_slope, hn::IfThenElseZero(hn::AndNot(smooth, valid), slope));
+        const M<Tag> kinked = hn::And(hn::Lt(inverse, zero), valid);
+        const V<Tag> slope = hn::IfThenElseZero(kinked, steepest<kind>(d, e, least, peak));
+        if constexpr (proves_feet<shape>) {
+            // What follows from s'' >= 0, to which each ray adds. By how much is not known before; for short
+            // windows it is less.
+            outward = hn::IfThenElse(kinked, constant(d, 1), outward);
+            sums.kinked_slope =
+                hn::MulAdd(slope, constant(d, proved_kinks_count), sums.kinked_slope);
+        } else {
+            smooth = hn::AndNot(kinked, smooth);
+            // no f'' is known of the others
+            sums.kinked_slope = hn::Add(sums.kinked_slope, slope);
+        }
     }
     const Bend<Tag> bend = LanesOf<kind>::bound_curvature(
         d, LanesOfShape<shape>::curvature_range(e, s, error, least, most), peak, outward);

@@ -61,10 +61,6 @@ HWY_INLINE V<Tag> greatest_root(Tag d, const Entering& on, const Arrivals<Tag, s
 template <Shape shape>
 inline constexpr double greatest_turn = numbered<shape> ? 0.25 : 1e-2;
 
-// Where it may be far from the nearest place, too, but always is of the skeleton.
-template <Shape shape>
-inline constexpr bool takes_any_place = numbered<shape>&& SkeletonOf<shape>::has_kinks;
-
 // From the field, in double.
 template <Shape shape>
 struct FieldArrivals {
@@ -187,20 +183,31 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
         const V<Tag> whole =
             hn::Mul(per_length, LanesOf<kind>::slope(d, arrivals.least, arrivals.peak));
         const V<Tag> c_length = hn::Mul(length_of(d, arrivals.place), widened);
-        const EntryErrors<Tag> eta =
+        EntryErrors<Tag> eta =
             etas<shape>(d, on, e, c_length, arrivals.inverse, arrivals.inverse_width);
+        M<Tag> is_proved = hn::FirstN(d, 0);
+        if constexpr (proves_feet<shape>) {
+            const EntryErrors<Tag> of_proved =
+                etas<shape>(d, on, e, c_length, constant(d, -1), arrivals.inverse_width);
+            is_proved = hn::Or(kinked, hn::And(hn::Gt(arrivals.inverse, zero),
+                                               hn::Not(hn::Lt(eta.value, c(5e-4)))));
+            eta = {hn::IfThenElse(is_proved, of_proved.value, eta.value),
+                   hn::IfThenElse(is_proved, of_proved.slope, eta.slope)};
+        }
         EntryErrors<Tag> off =
             LanesOf<kind>::errors(d, on.u, eta, arrivals.least,
                                   greatest_root<shape>(d, on, arrivals, c_length), arrivals.peak);
         M<Tag> is_exact = hn::Lt(eta.value, c(5e-4));
-        if constexpr (takes_any_place<shape>) {
-            // `away` leads from some place of the skeleton: k is no more than it should be, but for what
-            // rounding takes from |away|, with q r < 0.004 less than a hundredth of Blinn's k, and 3 r of others.
+        if constexpr (proves_feet<shape>) {
+            // Where that is worth nothing `away` leads from some place of the skeleton: k is no more than it
+            // should be, but for what rounding takes from |away|, with q r < 0.004 less than a hundredth of
+            // Blinn's k, and 3 r of others.
             const V<Tag> all = hn::Add(hn::Add(c_length, e.parameter), c(on.H));
             const V<Tag> r =
                 hn::Mul(hn::MulAdd(c(64 * on.u), all, c(on.place_error)), arrivals.inverse_width);
             const V<Tag> most = hn::MulAdd(arrivals.peak, c(1.01), hn::Mul(c(3), r));
-            kinked = hn::Or(kinked, hn::Not(is_exact));
+            kinked = hn::Not(is_exact);
+            is_proved = hn::And(is_proved, is_exact);
             off.value = hn::IfThenElse(is_exact, off.value, most);
             is_exact = hn::Or(is_exact, hn::Lt(r, c(1e-4)));
         }
@@ -249,9 +256,9 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             // 1 / |m|^2 of a very short segment and such are beyond float.
             const V<Tag> largest = hn::Max(square, strength);
             const M<Tag> knows_slope = hn::Lt(eta.slope, c(greatest_turn<shape>));
-            fit = hn::And(
-                fit, hn::And(takes_any_place<shape> ? hn::Or(knows_slope, kinked) : knows_slope,
-                             hn::Lt(largest, c(1e12))));
+            fit =
+                hn::And(fit, hn::And(proves_feet<shape> ? hn::Or(knows_slope, kinked) : knows_slope,
+                                     hn::Lt(largest, c(1e12))));
             if constexpr (has_axis<shape>) fit = hn::And(fit, hn::Lt(parameter, c(1e12)));
         }
         bad = hn::Or(bad, hn::AndNot(fit, enters));
@@ -272,6 +279,11 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             0);
         V<Tag> taper_rate = zero;
         if constexpr (tapers<shape>) taper_rate = e.taper_rate;
+        if constexpr (proves_feet<shape>) {
+            const V<Tag> proof = hn::Mul(hn::Mul(hn::Abs(full), hn::Mul(widened, widened)),
+                                         LanesOf<kind>::steepest(d, arrivals.least));
+            taper_rate = hn::IfThenElseZero(is_proved, hn::Max(proof, c(least_square<float>)));
+        }
         V<Tag> joins = zero;
         if constexpr (joined<shape>) {
             alignas(64) hn::TFromD<Tag> of_lane[lanes_at_most] = {};

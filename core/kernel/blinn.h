@@ -164,6 +164,11 @@ struct KernelLanes<Blinn> {
         return hn::MulAdd(k, hn::Set(d, Margin::more), hn::Set(d, Margin::least_peak));
     }
 
+    template <class Tag>
+    static HWY_INLINE V<Tag> steepest(Tag d, V<Tag> s) {
+        return peak(d, s);
+    }
+
     // With s = least + y, e^-s sqrt(s) <= e^-least (sqrt(least) + sup sqrt(y) e^-y); sup of x e^-x^2
     // for x >= 0 is 0.4289.
     template <class Tag>

@@ -135,6 +135,7 @@ struct EntryErrors {
 //     argument_scale, slope_sign
 //     at(d, s)                    of s times argument_scale
 //     peak(d, s)                  an upper bound of k from a lower bound of s
+//     steepest(d, s)              of |k'| from a lower bound of s
 //     slope(d, least, peak)       of w / (2 |b|) |F'| = x |k'| <= sqrt(s) |k'| where s >= least
 //     bound_curvature(d, range, peak, outward)
 //     errors(d, u, eta, least, greatest_root, peak)

@@ -241,6 +241,128 @@ struct ShapeLanes<CurveSkeleton> {
         return off.from;
     }
 
+    // Of one place c(x), the nearest as far as five of them and Newton's steps tell. With h(y) = (g(y) - g(x)) /
+    // (y - x), a polynomial of the fourth degree,
+    //     |v - c(y)|^2 = |v - c(x)|^2 - 2 g(x) (y - x) - 2 (integral of (s - x) h(s) from x to y)
+    //                 >= square - 2 G |y - x| + q (y - x)^2,
+    // -q the greatest of h's Bernstein coefficients on [-1, 1] and G = |g(x)|; at an end that g leads out of G is
+    // 0 and q larger by |g|, as |y - x| <= 2. After a way t of the ray that is less by no more than 2 |t| F |y - x|
+    // beside what c(x) alone does, F the greatest |c'|: so slack = G^2 / q, and the foot is within |y - x| <= 2 (G
+    // + |t| F) / q. Where D is concave along the arc, which it stays while |g'| changes by less than reach |c''|,
+    // an end is the nearest: that which no other arc has.
+    // What rounding does is as if v and the coefficients of c were others (`errors`), and, with S = (|v| + R) R,
+    // R = |k1| + |k2| + |k3| and the sum of all |g_k| <= 3 S, 64 u S in g, 512 u S in q and 2048 u S in g'.
+    template <class Tag>
+    static HWY_INLINE ProvedFoot<Tag> proved_foot(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
+                                                  const Vec3v<Tag>& p, V<Tag> reach) {
+        using namespace curve_arc;
+        using Real = hn::TFromD<Tag>;
+        using Margin = Margins<Real>;
+        const Real* const numbers = e.numbers();
+        const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
+            return hn::Set(d, numbers[k]);
+        };
+        const auto vector = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
+            return Vec3v<Tag>{number(k), number(k + 1), number(k + 2)};
+        };
+        const Vec3v<Tag> from = from_first_place(d, e, p);
+        const Vec3v<Tag> v{hn::Sub(from.x, number(at_k0)), hn::Sub(from.y, number(at_k0 + 1)),
+                           hn::Sub(from.z, number(at_k0 + 2))};
+        const Vec3v<Tag> k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
+        const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
+        const V<Tag> zero = hn::Zero(d), one = c(1), minus_one = c(-1);
+        const auto away_at = [&](V<Tag> x) HWY_ATTR __attribute__((always_inline)) {
+            const auto away = [&](V<Tag> k1i, V<Tag> k2i, V<Tag> k3i, V<Tag> vi) HWY_ATTR
+                __attribute__((always_inline)) {
+                return hn::NegMulAdd(x, hn::MulAdd(x, hn::MulAdd(x, k3i, k2i), k1i), vi);
+            };
+            return Vec3v<Tag>{away(k1.x, k2.x, k3.x, v.x), away(k1.y, k2.y, k3.y, v.y),
+                              away(k1.z, k2.z, k3.z, v.z)};
+        };
+        const auto square_at = [&](V<Tag> x) HWY_ATTR __attribute__((always_inline)) {
+            const Vec3v<Tag> away = away_at(x);
+            return dot<Tag>(away, away);
+        };
+
+        // The nearest of five places, and on from there.
+        const V<Tag> at_first = square_at(minus_one), at_last = square_at(one);
+        V<Tag> x = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
+        V<Tag> least = hn::Min(at_first, at_last);
+        for (const double place : {-0.5, 0.0, 0.5}) {
+            const V<Tag> square = square_at(c(place));
+            x = hn::IfThenElse(hn::Lt(square, least), c(place), x);
+            least = hn::Min(least, square);
+        }
+        const V<Tag> g0 = dot<Tag>(v, k1), g1 = hn::MulSub(c(2), dot<Tag>(v, k2), number(at_g)),
+                     g2 = hn::MulSub(c(3), dot<Tag>(v, k3), number(at_g + 1)),
+                     g3 = hn::Neg(number(at_g + 2)), g4 = hn::Neg(number(at_g + 3)),
+                     g5 = hn::Neg(number(at_g + 4));
+        const V<Tag> s1 = hn::Add(g2, g2), s2 = hn::Mul(c(3), g3), s3 = hn::Mul(c(4), g4),
+                     s4 = hn::Mul(c(5), g5);
+        const V<Tag> falls = hn::Set(d, -least_square<Real>), begun = x;
+        for (int step = 0; step < newton_steps<Real>; ++step) {
+            const V<Tag> g = hn::MulAdd(
+                x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, g5, g4), g3), g2), g1),
+                g0);
+            const V<Tag> slope =
+                hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, s4, s3), s2), s1), g1);
+            x = hn::Min(hn::Max(hn::Sub(x, hn::Div(g, hn::Min(slope, falls))), minus_one), one);
+        }
+        x = hn::IfThenElse(hn::Lt(least, square_at(x)), begun, x);
+
+        const V<Tag> R = number(at_radius);
+        const V<Tag> S =
+            hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), R)), R);
+        const V<Tag> error =
+            hn::MulAdd(S, c(4 * double{Margin::margin}), hn::Mul(number(at_lost_square), c(64)));
+        // On all of the arc and of the reach: g' as far as it is above that, in Bernstein's form.
+        const V<Tag> even = hn::Add(g1, hn::Add(s2, s4)), odd = hn::Add(s1, s3),
+                     inner = hn::Sub(g1, s4), half_odd = hn::Mul(c(0.5), hn::Sub(s1, s3));
+        const V<Tag> least_rise =
+            hn::Min(hn::Min(hn::Sub(even, hn::Abs(odd)), hn::Sub(inner, hn::Abs(half_odd))),
+                    hn::Add(hn::NegMulAdd(c(1.0 / 3), s2, g1), s4));
+        const V<Tag> own_end = number(at_own_end);
+        const M<Tag> is_end =
+            hn::And(hn::Gt(hn::NegMulAdd(c(4), error, least_rise),
+                           hn::Mul(hn::Mul(reach, number(at_turn)), hn::Set(d, Margin::more))),
+                    hn::Lt(own_end, c(1.5)));
+        const V<Tag> nearer_end = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
+        x = hn::IfThenElse(is_end, hn::IfThenElse(hn::Eq(own_end, zero), nearer_end, own_end), x);
+
+        const V<Tag> h4 = g5, h3 = hn::MulAdd(x, h4, g4), h2 = hn::MulAdd(x, h3, g3),
+                     h1 = hn::MulAdd(x, h2, g2), h0 = hn::MulAdd(x, h1, g1),
+                     g = hn::MulAdd(x, h0, g0);
+        const V<Tag> greatest =
+            hn::Max(hn::Max(hn::Add(hn::Add(h0, hn::Add(h2, h4)), hn::Abs(hn::Add(h1, h3))),
+                            hn::Add(hn::Sub(h0, h4), hn::Abs(hn::Mul(c(0.5), hn::Sub(h1, h3))))),
+                    hn::Add(hn::NegMulAdd(c(1.0 / 3), h2, h0), h4));
+        const V<Tag> outward =
+            at_least_0(hn::Sub(hn::IfThenElseZero(hn::Eq(hn::Abs(x), one), hn::Mul(g, x)), error));
+        const V<Tag> q = hn::Sub(hn::Sub(outward, greatest), error);
+        const V<Tag> G =
+            hn::IfThenElseZero(hn::Eq(outward, zero), hn::MulAdd(error, c(0.125), hn::Abs(g)));
+        const V<Tag> fastest = number(at_fastest), widened = c(1 + 0x1p-10);
+        const M<Tag> known = hn::Gt(q, hn::Mul(error, c(0x1p-3)));
+        const V<Tag> inverse = hn::Div(widened, hn::IfThenElse(known, q, one));
+        const V<Tag> at_most = hn::Mul(hn::Add(G, hn::Abs(hn::Min(q, zero))), c(4 * (1 + 0x1p-10)));
+        ProvedFoot<Tag> foot;
+        foot.away = away_at(x);
+        foot.square = dot<Tag>(foot.away, foot.away);
+        // Of an end nothing else is asked, and where nothing is known there is d' <= 1.
+        const V<Tag> of_known = hn::Min(at_most, hn::Mul(square_of(G), inverse));
+        foot.slack = hn::IfThenZeroElse(is_end, hn::IfThenElse(known, of_known, at_most));
+        const M<Tag> is_bounded = hn::AndNot(is_end, known);
+        foot.bend =
+            hn::IfThenElseZero(is_bounded, hn::Mul(hn::Mul(c(2), square_of(fastest)), inverse));
+        const V<Tag> anything =
+            hn::Mul(hn::Add(hn::Sqrt(foot.square), reach), c(2 * (1 + 0x1p-10)));
+        foot.pull = hn::IfThenZeroElse(
+            is_end,
+            hn::IfThenElse(known, hn::Mul(hn::Mul(c(2), hn::Mul(fastest, G)), inverse), anything));
+        foot.in_reach = hn::Or(is_end, hn::Not(known));
+        return foot;
+    }
+
     // Some arcs' middles, from where places are relative to; and the axis' point at t from there.
     template <class Tag>
     static HWY_INLINE Vec3v<Tag> middle_of(const Seen<Tag, shape>& e) {
@@ -394,10 +516,9 @@ struct ShapeLanes<CurveSkeleton> {
     // or not,
     //     e' <= N e^2,  N = |g''| / (2 |g'|) <= (3 |c'.c''| + d |c'''|) / (2 |c'|^2 (1 - B)),
     // of a way e <= 1, along the arc |c'| e. Another place is taken where it is nearer by the share m = 16
-    // margins of the square. Here that is for rounding alone, where m d < 8 own: then the two are within
-    // sqrt((2 d own + own^2) / (1 - B)) of each other, less than sqrt(17 / m) own / (1 - B)^1/2. Where there
-    // may be a kink the distance is off by that share too, and by `excess`, where d >= 0.8 |c'|^2 / |c''|, or N
-    // has 1 - B >= 0.2. Of a point nothing counts but its size.
+    // margins of the square: that is for rounding alone, where m d < 8 own: then the two are within
+    // sqrt((2 d own + own^2) / (1 - B)) of each other, less than sqrt(17 / m) own / (1 - B)^1/2. Of a foot that
+    // is proved for each ray `own` alone counts, and of a point nothing but its size.
     template <class Tag>
     static HWY_INLINE EntryErrors<Tag> errors(Tag d, const Entering& on, const Seen<Tag, shape>& e,
                                               V<Tag> eta, V<Tag> v_length, V<Tag> inverse) {
@@ -409,34 +530,28 @@ struct ShapeLanes<CurveSkeleton> {
             16 * (in_float ? double{Margins<float>::margin} : Margins<double>::margin);
         const V<Tag> zero = hn::Zero(d), one = c(1), tiny = c(on.least_rho);
         const V<Tag> slowest = e.number(at_slowest), fastest = e.number(at_fastest),
-                     turn = e.number(at_turn), all = hn::Add(v_length, e.parameter);
-        const M<Tag> is_smooth = hn::Gt(inverse, zero), is_kinked = hn::Lt(inverse, zero),
+                     all = hn::Add(v_length, e.parameter);
+        const M<Tag> is_smooth = hn::Gt(inverse, zero), is_proved = hn::Lt(inverse, zero),
                      is_point = hn::Not(hn::Gt(slowest, zero));
-        const V<Tag> steeper =
-            hn::IfThenElse(is_kinked, c(5.1), hn::Max(hn::Mul(inverse, fastest), one));
+        const V<Tag> steeper = hn::Max(hn::Mul(inverse, fastest), one);
         const V<Tag> square = hn::Max(square_of(slowest), square_of(tiny));
         const V<Tag> speeds = speed_change(d, e.number(at_speeding), square);
-        const V<Tag> third = hn::IfThenElseZero(is_kinked, hn::Mul(all, e.number(at_third)));
-        const V<Tag> n = hn::Mul(hn::Div(hn::Add(speeds, third), hn::Add(square, square)),
-                                 hn::Mul(steeper, c(1 + 0x1p-10)));
+        const V<Tag> n =
+            hn::Mul(hn::Div(speeds, hn::Add(square, square)), hn::Mul(steeper, c(1 + 0x1p-10)));
         V<Tag> steps = one;
         for (int step = 0; step < (in_float ? newton_steps<float> : newton_steps<double>); ++step) {
             steps = hn::Min(hn::Mul(n, square_of(steps)), one);
         }
-        const V<Tag> of_steps =
-            hn::Mul(fastest, hn::IfThenElseZero(hn::Or(is_smooth, is_kinked), steps));
+        const V<Tag> of_steps = hn::Mul(fastest, hn::IfThenElseZero(is_smooth, steps));
         const V<Tag> own = hn::MulAdd(c(4 * u), all, hn::Mul(c(16 * u), fastest));
-        const V<Tag> of_place = hn::Mul(hn::Mul(c(16 * u), all), steeper);
-        // excess / (2 d) <= |c''| (0.16 F + 0.13 + 0.06 F^1/2), F the square of the greatest |c'| over the
-        // least, which |c''| is less than 0.7 of
-        const V<Tag> of_kink =
-            hn::MulAdd(hn::Mul(turn, c(0.24)), hn::Add(hn::Div(square_of(fastest), square), one),
-                       hn::Mul(all, c(0.5 * share)));
+        const V<Tag> of_place =
+            hn::IfThenZeroElse(is_proved, hn::Mul(hn::Mul(c(16 * u), all), steeper));
         const V<Tag> of_point = hn::IfThenElseZero(is_point, hn::Mul(c(2), e.number(at_radius)));
-        const V<Tag> value = hn::Add(hn::Add(hn::Add(eta, own), hn::Add(of_place, of_steps)),
-                                     hn::Add(of_point, hn::IfThenElseZero(is_kinked, of_kink)));
+        const V<Tag> value =
+            hn::Add(hn::Add(hn::Add(eta, own), hn::Add(of_place, of_steps)), of_point);
         const V<Tag> of_choice = hn::Mul(hn::Mul(own, c(std::sqrt(17 / share))), hn::Sqrt(steeper));
-        return {value, hn::Add(hn::Add(of_choice, hn::Mul(eta, steeper)), of_point)};
+        const V<Tag> slope = hn::IfThenZeroElse(is_proved, hn::MulAdd(eta, steeper, of_choice));
+        return {value, hn::Add(slope, of_point)};
     }
 };
 

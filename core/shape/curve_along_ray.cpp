@@ -58,7 +58,7 @@ CurveAlongRay::At CurveAlongRay::at(double t) const {
     }
     const Span share = quick::div(Span(1.0), quick::sqr(Span(width)));
     const Span s = quick::mul(found.square, share);
-    return {{std::max(s.lo, 0.0), s.hi}, quick::mul(quick::scale(2, slope), share)};
+    return {{std::max(s.lo, 0.0), s.hi}, quick::mul(quick::scale(2, slope), share), found.bend};
 }
 
 CurveAlongRay::Over CurveAlongRay::over(double t0, double t1, const At& at0, const At& at1) const {
@@ -92,6 +92,8 @@ CurveAlongRay::Over CurveAlongRay::over(double t0, double t1, const At& at0, con
         if (bent < 0.99) range.dds.lo = -2 * speed.hi * bent / (1 - bent) * (1 + 16 * u);
     }
     narrow_by_ends(range, elapsed, at0.s, at0.ds, at1.s, at1.ds);
+    // From the left end on, which is what it is asked for (core/field/inclusion.h).
+    range.dds.lo = std::max(range.dds.lo, -2 * speed.hi * at0.bend * (1 + 16 * u));
     return range;
 }
 

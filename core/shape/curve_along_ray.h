@@ -22,6 +22,7 @@ struct CurveAlongRay {
 
     struct At {
         Interval<double> s, ds;
+        double bend;  // of the feet (curve_arc::Feet)
     };
     using Over = SquareRange;
 

@@ -89,6 +89,42 @@ class Foot {
         return x;
     }
 
+    // From x by Newton's steps as far as they go down, or to an end.
+    [[nodiscard]] double refined(double x) const {
+        std::array<double, 6> c{};
+        for (std::size_t k = 0; k < 6; ++k) c[k] = midpoint(a_[k]);
+        constexpr int most_steps = 12;
+        for (int step = 0; step < most_steps; ++step) {
+            double g = c[5], slope = 5 * c[5];
+            for (std::size_t k = 5; k-- > 0;) g = c[k] + x * g;
+            for (std::size_t k = 5; k-- > 1;) slope = static_cast<double>(k) * c[k] + x * slope;
+            const double next = slope < 0 ? std::clamp(x - g / slope, -1.0, 1.0)
+                                : g > 0   ? 1.0
+                                          : -1.0;
+            if (std::abs(next - x) <= 0x1p-52) return next;
+            x = next;
+        }
+        return x;
+    }
+    // -h, h(y) = (g(y) - g(x)) / (y - x), at the least for y from -1 to 1: in Bernstein's form.
+    [[nodiscard]] double least_fall(double x) const {
+        std::array<Span, 5> h;
+        h[4] = a_[5];
+        for (std::size_t k = 4; k-- > 0;) {
+            h[k] = quick::add(a_[k + 1], quick::mul(Span(x), h[k + 1]));
+        }
+        const auto magnitude = [](const Span& s) {
+            return std::max(std::abs(s.lo), std::abs(s.hi));
+        };
+        const Span even = quick::add(h[0], quick::add(h[2], h[4]));
+        const double odd = magnitude(quick::add(h[1], h[3])),
+                     half_odd = 0.5 * magnitude(quick::sub(h[1], h[3]));
+        const Span middle = quick::add(
+            quick::sub(h[0], quick::mul(Span(1.0 / 3 - 0x1p-54, 1.0 / 3 + 0x1p-54), h[2])), h[4]);
+        return -std::max(
+            {add_up(even.hi, odd), add_up(quick::sub(h[0], h[4]).hi, half_odd), middle.hi});
+    }
+
   private:
     std::array<Span, 6> a_;
 };
@@ -163,6 +199,7 @@ std::vector<double> numbers_of(const Cubic& c, const ArcShape& shape, int expone
     // No coefficient is larger than some dozen sizes, near 1.
     length(0x1p-90);
     square(0x1p-86);
+    numbers.push_back(0);
     return numbers;
 }
 
@@ -213,6 +250,33 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         best = std::min(best, square.hi);
         leave(Span(x), square.lo);
     };
+
+    // One foot that is lower than all other places by q |y - x|^2: as `proved_foot` in curve.h.
+    const double whole_fall = -foot.slope(Span(-1.0, 1.0)).hi;  // of g, at the least
+    if (!(whole_fall > 0)) {
+        double x = -1;
+        for (const double place : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+            const double square = square_at(Span(place)).hi;
+            if (square < best) x = place;
+            best = std::min(best, square);
+        }
+        x = foot.refined(x);
+        const Span g = foot.at(Span(x));
+        const double outward = x == 1 ? g.lo : x == -1 ? -g.hi : 0;
+        const double q = sub_down(std::max(outward, 0.0), -foot.least_fall(x));
+        const double G = outward > 0 ? 0 : mag(g);
+        if (q > 0 && G < 0x1p-20 * q) {
+            const Span square = square_at(Span(x));
+            const double off = 2 * G / q * (1 + 8 * unit_roundoff),
+                         slack = G * G / q * (1 + 8 * unit_roundoff), fastest = numbers[at_fastest];
+            Feet found;
+            found.square = {std::max(sub_down(square.lo, slack), 0.0), square.hi};
+            found.x[0] = {std::max(sub_down(x, off), -1.0), std::min(add_up(x, off), 1.0)};
+            found.count = 1;
+            found.bend = 2 * fastest * fastest / q * (1 + 16 * unit_roundoff);
+            return found;
+        }
+    }
 
     struct Part {
         double a, b;
@@ -276,6 +340,10 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
         }
     }
     found.square = {std::max(least, 0.0), best};
+    if (whole_fall > 0) {
+        found.bend =
+            2 * numbers[at_fastest] * numbers[at_fastest] / whole_fall * (1 + 16 * unit_roundoff);
+    }
     return found;
 }
 
@@ -365,6 +433,8 @@ std::vector<SkeletonPart> curve_arcs(std::span<const Vec3d> control_points) {
         if (is_point) shape.slowest = 0;
         arcs.push_back({columns, numbers_of(arc, shape, exponent)});
     }
+    arcs.front().numbers[curve_arc::at_own_end] = arcs.size() == 1 ? 2 : -1;
+    if (arcs.size() > 1) arcs.back().numbers[curve_arc::at_own_end] = 1;
     return arcs;
 }
 

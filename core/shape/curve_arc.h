@@ -23,16 +23,18 @@ namespace curve_arc {
 // Where its numbers stand: k0 .. k3; of g, k1.k1, 3 k1.k2, 2 k2.k2 + 4 k1.k3, 5 k2.k3, 3 k3.k3; the places
 // of both ends less k0; on the arc, the least and the greatest |c'|, the greatest |c''|, the greatest
 // |c' . c''|, |c'''|; the radius of a ball around k0; what the first twelve may be off by beside their own
-// rounding, and the square of the size with those of g. All of them bounds where they have to be.
+// rounding, and the square of the size with those of g. All of them bounds where they have to be. Last the x
+// of the curve's own end, if the arc has one: -1 or 1, 0 if none, 2 if both.
 inline constexpr std::size_t at_k0 = 0, at_k1 = 3, at_k2 = 6, at_k3 = 9, at_g = 12, at_begin = 17,
                              at_end = 20, at_slowest = 23, at_fastest = 24, at_turn = 25,
                              at_speeding = 26, at_third = 27, at_radius = 28, at_lost = 29,
-                             at_lost_square = 30, most_numbers = 31;
+                             at_lost_square = 30, at_own_end = 31, most_numbers = 32;
 
 // An arc is short: |c' - k1| <= |k1| / 4, and 3 |c'.c''| <= |c'|^2 / 3; or, at a cusp, of no size.
 inline constexpr double greatest_turn = 1.0 / 4, greatest_speeding = 1.0 / 3;
 
 [[nodiscard]] constexpr float in_units(std::size_t k, double value, double per_unit) {
+    if (k == at_own_end) return static_cast<float>(value);
     const bool is_square = (k >= at_g && k < at_begin) || k == at_speeding || k == at_lost_square;
     return static_cast<float>(is_square ? value * per_unit * per_unit : value * per_unit);
 }
@@ -42,6 +44,8 @@ struct Feet {
     Interval<double> square;
     std::array<Interval<double>, 6> x;  // all are in one of these
     std::size_t count = 0;
+    // There is one foot, and after a way t from a v of the box (D' - 2 t) has changed by at most 2 |t| bend.
+    double bend = infinity<double>;
 };
 // Of all v in a box, k0 subtracted. Sharp where it is thin.
 [[nodiscard]] Feet feet(std::span<const double> numbers, const Vec3<Interval<double>>& v);

@@ -237,8 +237,25 @@ struct Entering {
 // and, where it has kinks,
 //     turning(seen, reach, error, most)
 //     is_defined(d, entry, inverse_square, p)     the direction of `away`
+// and, where it proves feet,
+//     proved_foot(d, entry, p, reach)
 template <class S>
 struct ShapeLanes;
+
+// What is proved of one place c of a skeleton from p alone, whatever its other places are like: with d the
+// distance and v a ray's direction, of length 1,
+//     square - slack <= d^2 <= square = |p - c|^2,
+//     |(d^2)'(t) - 2 (p - c).v - 2 t| <= 2 (bend |t| + pull)  for all t from p, on either side;
+// where `in_reach` only for |t| <= reach, and as far as no other part of the skeleton is nearer.
+template <class Tag>
+struct ProvedFoot {
+    Vec3v<Tag> away;  // p - c
+    V<Tag> square, slack, bend, pull;
+    M<Tag> in_reach;
+};
+// Stands for what there is no bound of.
+template <class Real>
+inline constexpr Real boundless = static_cast<Real>(sizeof(Real) == 4 ? 1e15 : 1e100);
 
 // Of a skeleton with kinks, on a stretch: s'' w^2 / 2 >= 1 - outward for a ray of speed 1, unless
 // `inverse` is below 0: then there may be a kink. Otherwise that is what `errors` wants to know.
@@ -263,6 +280,10 @@ namespace {
 
 template <Shape shape>
 using LanesOfShape = ShapeLanes<SkeletonOf<shape>>;
+
+// Whether it has kinks of which each ray may prove that they are none of its own.
+template <Shape shape>
+inline constexpr bool proves_feet = SkeletonOf<shape>::has_numbers&& SkeletonOf<shape>::has_kinks;
 
 template <class Visit, std::size_t... shape>
 HWY_INLINE void for_shapes(const Visit& visit, std::index_sequence<shape...>) {

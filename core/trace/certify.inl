@@ -18,7 +18,7 @@ namespace {
 // f in the middle, grad f of what is neither joined nor kinked there, its slope along the ray, and that with
 // a guess of what is joined.
 struct Middle {
-    V<F> f;
+    V<F> f, open;  // f may be more or less by as much
     Vec3v<F> gradient;
     V<F> known_slope, slope;
 };
@@ -27,6 +27,19 @@ template <Shape shape, KernelKind kind>
 HWY_INLINE void add_middle(F d, const BundleEntry<float>* entry, std::uint32_t count,
                            const Vec3v<F>& p, const Vec3v<F>& direction, Middle& sum) {
     for (const auto* const end = entry + count; entry != end; ++entry) {
+        if constexpr (proves_feet<shape>) {
+            if (any_proof(entry)) {
+                Branches<F> branches;
+                branches.begin(hn::Zero(d), hn::Zero(d), hn::Zero(d));
+                const V<F> strength = hn::Set(d, entry->strength);
+                const V<F> k =
+                    add_proved_parts<shape, kind>(d, entry, p, direction, sum.slope, branches);
+                sum.f = hn::MulAdd(strength, k, sum.f);
+                sum.open = hn::Add(sum.open, hn::Add(branches.more, branches.less));
+                --entry;
+                continue;
+            }
+        }
         V<F> square;
         Vec3v<F> away = away_from<shape>(d, *entry, p, square);
         V<F> s = hn::Mul(square, hn::Set(d, entry->inverse_square));
@@ -71,7 +84,7 @@ struct FootprintStage {
         const Vec3v<F> p{hn::MulAdd(tau, rays.direction.x, rays.middle.x),
                          hn::MulAdd(tau, rays.direction.y, rays.middle.y),
                          hn::MulAdd(tau, rays.direction.z, rays.middle.z)};
-        Middle sum{hn::Set(d, -threshold), {zero, zero, zero}, zero, zero};
+        Middle sum{hn::Set(d, -threshold), zero, {zero, zero, zero}, zero, zero};
         for (const StageEntries<float>* stage : {&window.strong, &window.weak}) {
             for_groups(*stage, [&]<Shape shape, KernelKind kind>(std::size_t first,
                                                                  std::uint32_t count) HWY_ATTR {
@@ -144,7 +157,8 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
             if (stop.after(work)) return steps;
             const Middle middle = stage.middle(rays, tau);
             const V<F> lateral = stage.lateral(middle);
-            const V<F> f_hi = hn::Add(hn::Add(middle.f, hn::Set(d, stage.above)), lateral);
+            const V<F> f_hi =
+                hn::Add(hn::Add(middle.f, middle.open), hn::Add(hn::Set(d, stage.above), lateral));
             const M<F> below = hn::And(walking, hn::Lt(f_hi, zero));
             undecided = hn::Or(undecided, hn::AndNot(below, walking));
             const V<F> slope_hi = hn::Add(middle.known_slope, more_slope);
@@ -168,7 +182,9 @@ std::uint64_t certify(const Window& window, const FootprintBounds& bounds, doubl
         undecided = hn::Or(undecided, walking);
 
         const auto is_inside = [&](const Middle& middle, V<F> lateral) HWY_ATTR {
-            return hn::Gt(hn::Sub(hn::Sub(middle.f, hn::Set(d, stage.below)), lateral), zero);
+            return hn::Gt(
+                hn::Sub(hn::Sub(middle.f, middle.open), hn::Add(hn::Set(d, stage.below), lateral)),
+                zero);
         };
         V<F> inside = tau, f_inside = zero;
         if (!hn::AllFalse(d, enters)) {

@@ -75,7 +75,7 @@ HWY_NOINLINE void add_joined_fine_group(D d, const BundleEntry<double>* entry, s
                                         FieldValue<D>& sum, Branches<D>& branches, V<D>& lost) {
     for (const auto* const end = entry + count; entry != end;) {
         const V<D> strength = hn::Set(d, entry->strength);
-        const V<D> k = add_parts<shape, kind>(d, entry, p, direction, sum.slope, branches);
+        const V<D> k = add_element<shape, kind>(d, entry, p, direction, sum.slope, branches);
         sum.f = compensated ? two_sum(sum.f, hn::Mul(strength, k), lost)
                             : hn::MulAdd(strength, k, sum.f);
     }
@@ -127,10 +127,18 @@ HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
     }
 }
 
+// `open`: what f may be off by where feet are to be proved.
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_float_group(F d, const BundleEntry<float>* entry, std::uint32_t count,
-                                const Vec3v<F>& p, V<F>& sum) {
+                                const Vec3v<F>& p, V<F>& sum, V<F>& open) {
     for (const auto* const end = entry + count; entry != end; ++entry) {
+        if constexpr (proves_feet<shape>) {
+            if (any_proof(entry)) {
+                sum = hn::MulAdd(hn::Set(d, entry->strength),
+                                 greatest_part<shape, kind>(d, entry, p, open), sum);
+                continue;
+            }
+        }
         V<F> square;
         away_from<shape>(d, *entry, p, square);
         V<F> s = hn::Mul(square, hn::Set(d, entry->inverse_square));
@@ -180,17 +188,22 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
         z[half] = p[half].z;
     });
     const Vec3v<F> in_units{narrowed(x, 1 / unit), narrowed(y, 1 / unit), narrowed(z, 1 / unit)};
-    V<F> in_float = hn::Zero(narrow);
+    V<F> in_float = hn::Zero(narrow), open = hn::Zero(narrow);
     for_groups(window.fine_in_float,
                [&]<Shape shape, KernelKind kind>(std::size_t first, std::uint32_t count) HWY_ATTR {
                    add_float_group<shape, kind>(narrow, window.fine_in_float.entry.data() + first,
-                                                count, in_units, in_float);
+                                                count, in_units, in_float, open);
                });
     alignas(64) float sums[HWY_MAX_BYTES / sizeof(float)];
+    alignas(64) float opens[HWY_MAX_BYTES / sizeof(float)];
     hn::Store(in_float, narrow, sums);
+    hn::Store(open, narrow, opens);
     for_each_of<n>([&](auto half) HWY_ATTR {
         const auto sum = hn::Load(hn::Rebind<float, D>(), sums + half * hn::Lanes(d));
         value[half].f = hn::Add(value[half].f, hn::PromoteTo(d, sum));
+        const auto both = hn::Load(hn::Rebind<float, D>(), opens + half * hn::Lanes(d));
+        branches[half].more = hn::Add(branches[half].more, hn::PromoteTo(d, both));
+        branches[half].less = hn::Add(branches[half].less, hn::PromoteTo(d, both));
     });
 }
 
@@ -231,18 +244,24 @@ struct Enclosed {
         const Window& window = task.window;
         const auto c = [&](double x) HWY_ATTR { return hn::Set(d, x); };
         const StageBounds& bounds = window.fine_bounds;
-        const V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
+        V<D> curvature = c(std::fmax(window.rise, window.fall) * (1 + 0x1p-40) + 1e-200);
         const V<D> zero = hn::Zero(d);
-        const V<D> f_hi = hn::Add(value.f, c(bounds.above));
-        const V<D> f_lo = hn::Sub(value.f, c(bounds.below));
+        V<D> f_hi = hn::Add(value.f, c(bounds.above));
+        V<D> f_lo = hn::Sub(value.f, c(bounds.below));
+        if (task.has_joined) {
+            const V<D> widened = c(1 + 0x1p-40);
+            f_hi = hn::MulAdd(branches.more, widened, f_hi);
+            f_lo = hn::NegMulAdd(branches.less, widened, f_lo);
+            curvature = hn::MulAdd(hn::Max(branches.rise, branches.fall), widened, curvature);
+        }
         const V<D> size = hn::Add(hn::Max(hn::Abs(f_lo), hn::Abs(f_hi)), c(task.left_out));
         const V<D> inverse = hn::Div(c(1), value.slope);
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
         V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
         if (task.has_joined) {
-            bend = hn::Add(
-                bend, hn::IfThenElse(hn::Le(delta, c(reach)),
-                                     hn::Max(branches.above, branches.below), branches.anywhere));
+            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, c(reach)),
+                                                hn::Max(branches.above, branches.below),
+                                                hn::Add(branches.anywhere, branches.beyond)));
         }
         const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
         // Then size / slope_lo < delta, and f < -left_out at m - delta.
@@ -311,7 +330,8 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
         const double reach = task.reach_of_step(step);
         if (task.has_joined) {
             for_each_of<n>([&](auto half) HWY_ATTR {
-                branches[half].begin(hn::Set(d, (1 - 0x1p-40) / reach), hn::Set(d, task.error));
+                branches[half].begin(hn::Set(d, reach), hn::Set(d, (1 - 0x1p-40) / reach),
+                                     hn::Set(d, task.error));
             });
         }
         for_each_of<n>([&](auto half)
@@ -388,14 +408,15 @@ std::uint64_t enclose(const Window& window, double threshold, double unit, doubl
     const auto set = [&](Lanes::State state)
                          HWY_ATTR { return hn::Set(d, static_cast<double>(state)); };
     const double error = 2 * (window.fine_bounds.above + window.fine_bounds.below);
-    const Enclosing task{window,
-                         threshold,
-                         unit,
-                         half_width,
-                         common_cell(half_width),
-                         left_out,
-                         joined_entries(window.fine).any(),
-                         error};
+    const Enclosing task{
+        window,
+        threshold,
+        unit,
+        half_width,
+        common_cell(half_width),
+        left_out,
+        joined_entries(window.fine).any() || joined_entries(window.fine_in_float).any(),
+        error};
     const Outcome outcome{pinned, otherwise};
     Batch batch;
     std::uint64_t steps = 0;

@@ -39,17 +39,35 @@ HWY_INLINE NearestPart<Tag> nearest_part(Tag d, const BundleEntry<hn::TFromD<Tag
                                          std::uint32_t& k, double per_scale, const Vec3v<Tag>& p,
                                          double gap, double turn) {
     using Real = hn::TFromD<Tag>;
+    const V<Tag> near = hn::Set(d, static_cast<Real>(gap)),
+                 apart = hn::Set(d, static_cast<Real>(turn));
+    V<Tag> unproved =
+        hn::Set(d, boundless<Real>);  // the least s of what may be nearer than was found
     const auto at = [&](const BundleEntry<Real>& e) HWY_ATTR {
         V<Tag> square;
-        const Vec3v<Tag> away = away_from<shape>(d, e, p, square);
+        Vec3v<Tag> away;
+        bool is_proved = false;
+        if constexpr (proves_feet<shape>) {
+            is_proved = e.proof() != 0;
+            if (is_proved) {
+                const ProvedFoot<Tag> foot = LanesOfShape<shape>::proved_foot(d, e, p, hn::Zero(d));
+                away = foot.away;
+                square = foot.square;
+                // The foot is no farther than `pull` from there.
+                const M<Tag> is_close =
+                    hn::Le(hn::Mul(foot.pull, foot.pull), hn::Mul(apart, square));
+                const V<Tag> least =
+                    hn::Mul(hn::Sub(square, foot.slack), hn::Set(d, e.inverse_square));
+                unproved = hn::IfThenElse(is_close, unproved, hn::Min(unproved, least));
+            }
+        }
+        if (!is_proved) away = away_from<shape>(d, e, p, square);
         const V<Tag> factor = hn::Set(d, static_cast<Real>(e.inverse_square * per_scale));
         return NearestPart<Tag>{
             hn::Mul(square, hn::Set(d, e.inverse_square)),
             {hn::Mul(factor, away.x), hn::Mul(factor, away.y), hn::Mul(factor, away.z)},
             hn::FirstN(d, hn::Lanes(d))};
     };
-    const V<Tag> near = hn::Set(d, static_cast<Real>(gap)),
-                 apart = hn::Set(d, static_cast<Real>(turn));
     NearestPart<Tag> best = at(entry[k]);
     while (entry[k].joins != 0) {
         const NearestPart<Tag> part = at(entry[++k]);
@@ -63,6 +81,10 @@ HWY_INLINE NearestPart<Tag> nearest_part(Tag d, const BundleEntry<hn::TFromD<Tag
                 {hn::IfThenElse(nearer, b.x, a.x), hn::IfThenElse(nearer, b.y, a.y),
                  hn::IfThenElse(nearer, b.z, a.z)},
                 hn::AndNot(hn::And(as_near, turns), hn::Or(nearer, best.defined))};
+    }
+    if constexpr (proves_feet<shape>) {
+        best.defined = hn::And(best.defined,
+                               hn::Gt(unproved, hn::Add(hn::MulAdd(near, best.s, near), best.s)));
     }
     return best;
 }

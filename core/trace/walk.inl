@@ -96,8 +96,8 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     const V<Tag> all_above = c(bounds.above * widened), all_below = c(bounds.below * widened),
                  all_slope_error = c(bounds.slope * widened);
     // f'' per unit^2, made larger by what the formulas may lose.
-    const V<Tag> rise = c(window.rise * unit * unit * (1 + 2 * Margin::tight) + S::tiny);
-    const V<Tag> fall = c(window.fall * unit * unit * (1 + 2 * Margin::tight) + S::tiny);
+    const V<Tag> window_rise = c(window.rise * unit * unit * (1 + 2 * Margin::tight) + S::tiny);
+    const V<Tag> window_fall = c(window.fall * unit * unit * (1 + 2 * Margin::tight) + S::tiny);
     const V<Tag> begin = c(stage.begin()), end = c(stage.end());
     // The sum tau + step is off by half a unit of its last place.
     const V<Tag> slack = c(S::last_place * stage.end());
@@ -109,7 +109,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     const V<Tag> error = c(2 * widened * (bounds.above + bounds.below));
     const V<Tag> least_reach = c(0x1p-10 * stage.end());
     Branches<Tag> branches;
-    branches.begin(zero, zero);
+    branches.begin(zero, zero, zero);
     Walked walked;
     std::uint64_t work = N * stage.entries().size;  // of a step, at most
     if constexpr (has_weak) work += N * stage.more_entries().size;
@@ -133,7 +133,8 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
                                hn::MulAdd(tau, direction.z, middle.z)};
             if (joined.any()) {  // asked for up to the end of the window
                 const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
-                branches.begin(hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)), error);
+                branches.begin(reach, hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)),
+                               error);
             }
             FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction, branches);
             V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
@@ -162,6 +163,14 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             const M<Tag> settles =
                 hn::And(guessing, hn::Or(hn::Le(hn::Abs(hn::Sub(newton, tau)), settled),
                                          hn::Ge(guesses, c(S::most_guesses))));
+
+            V<Tag> rise = window_rise, fall = window_fall;
+            if (joined.any()) {
+                above = hn::MulAdd(branches.more, c(widened), above);
+                below = hn::MulAdd(branches.less, c(widened), below);
+                rise = hn::MulAdd(branches.rise, c(1 + 4 * Margin::tight), rise);
+                fall = hn::MulAdd(branches.fall, c(1 + 4 * Margin::tight), fall);
+            }
 
             // f(tau) < 0 must be certain for anything else to be.
             const V<Tag> f_hi = hn::Add(value.f, above);
