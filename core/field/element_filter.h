@@ -19,9 +19,6 @@ class ElementFilter {
     void add(std::span<const std::uint32_t> elements) {
         for (const std::uint32_t element : elements) add(element);
     }
-    void add(const ElementFilter& others) {
-        for (std::size_t k = 0; k < words_.size(); ++k) words_[k] |= others.words_[k];
-    }
     void add_all() { words_.fill(~std::uint64_t{0}); }
 
     // false: certainly no element is in both.

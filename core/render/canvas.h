@@ -42,13 +42,11 @@ struct Picture {
 
 // A tile as the last job left it.
 struct TileState {
-    // 0: nothing traced yet; n: the pixels whose column and row are multiples of n are traced, so
-    // that 1 is all of them.
-    int stride = 0;
+    bool traced = false;    // all of its pixels; else nothing of it is
     bool empty = false;     // a list proved f < 0 on all its rays: every pixel is a miss
     bool has_list = false;  // `list` is valid on the tile's rays
     ElementList list;
-    std::array<std::uint16_t, 5> pixels{};  // how many of the traced ones have each Status
+    std::array<std::uint16_t, 5> pixels{};  // how many of them have each Status
     double enclosure_width_max = 0;         // the widest t of a hit, as a length in the scene
     double unresolved_width_max = 0;        // and of an unresolved pixel
     ElementFilter looked_at;                // those that the canvas' looks were mixed of

@@ -17,35 +17,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The first pass has at least so many pixels, where a tile's share of them is no more than 4.
-constexpr std::size_t least_first_pixels = 128;
-
-std::vector<int> strides_of(const JobSettings& settings, std::size_t tiles) {
-    if (settings.order != Order::coarse_to_fine || settings.task == Task::shade ||
-        settings.task == Task::sample) {
-        return {1};
-    }
-    int stride = TileGrid::block_side;
-    for (std::size_t squares = tiles / 16; stride > 8 && squares < least_first_pixels;
-         squares *= 4) {
-        stride /= 2;
-    }
-    // Each pass bounds the field on its windows anew: more passes between would cost more than they
-    // show.
-    if (stride > tile_side) return {stride, 8, 1};
-    return {stride, 1};
-}
-
 }  // namespace
 
 // The work is a sequence of steps, dealt out by one atomic number:
 //
-//   step 0 ..                the lists of the regions that hold a block without lists
-//   then, for each stride    the blocks, first those around the focus
+//   step 0 ..   the lists of the regions that hold a block without lists
+//   then        the blocks, first those around the focus if they are wanted so
 //
-// A step waits for the one that it builds on: a block of the first pass for its region, one of a
-// later pass for the same block in the pass before. That one has a smaller number and so is being
-// done already; by induction somebody always gets on.
+// A block waits for its region's list. That step has a smaller number and so is being done already.
 class FrameJob::Work {
   public:
     Work(Picture picture, Canvas& canvas, JobSettings settings)
@@ -53,9 +32,7 @@ class FrameJob::Work {
           canvas_(canvas),
           settings_(std::move(settings)),
           lists_(picture_, canvas, stop_,
-                 settings_.task == Task::sample ? settings_.sampled->samples : 1),
-          tile_begun_(canvas.grid.tiles.size()),
-          passes_done_(canvas.grid.blocks.size()) {
+                 settings_.task == Task::sample ? settings_.sampled->samples : 1) {
         plan();
     }
 
@@ -158,10 +135,7 @@ class FrameJob::Work {
             needed[region] = 0;
             region_order_.push_back(region);
         }
-        std::size_t tile_count = 0;
-        for (std::size_t tile = 0; tile < tiles().size(); ++tile) tile_count += selected(tile);
-        strides_ = strides_of(settings_, tile_count);
-        steps_ = region_order_.size() + strides_.size() * block_order_.size();
+        steps_ = region_order_.size() + block_order_.size();
     }
 
     void begin_at_focus() {
@@ -227,14 +201,9 @@ class FrameJob::Work {
             lists_.make_region(region, worker.counts);
             return true;
         }
-        step -= region_order_.size();
-        const std::size_t pass = step / block_order_.size();
-        const std::size_t block = block_order_[step % block_order_.size()];
-        if (pass > 0 && !wait_until(passes_done_[block], static_cast<int>(pass), stop_))
-            return false;
-        if (!take_block(block, pass, worker)) return false;
-        passes_done_[block].store(static_cast<int>(pass) + 1, std::memory_order_release);
-        return true;
+        const std::size_t block = block_order_[step - region_order_.size()];
+        return settings_.task == Task::sample ? sample_block(block, worker)
+                                              : take_block(block, worker);
     }
 
     bool sample_block(std::size_t block, TileWorker& worker) {
@@ -249,48 +218,32 @@ class FrameJob::Work {
             if (!done) return;
             ++worker.tiles;
             if (!list.certainly_empty) worker.mark_reached(list);
-            if (settings_.on_tile) settings_.on_tile({tile, tiles().rect(tile), 1, tile_side});
+            if (settings_.on_tile) settings_.on_tile({tile, tiles().rect(tile)});
         });
         lists_.forget_block(block);
         return done;
     }
 
-    bool take_block(std::size_t block, std::size_t pass, TileWorker& worker) {
-        if (settings_.task == Task::sample) return sample_block(block, worker);
+    bool take_block(std::size_t block, TileWorker& worker) {
         const PixelRect rect = blocks().rect(block);
         worker.leave_block();
-        if (pass == 0 && !list_tiles_of(block, worker)) return false;
-        // Of a square larger than a tile the first tile alone, unless all are done at once.
-        const bool sparse = strides_[pass] > tile_side && !is_listed_empty(block);
-        const int square = sparse ? strides_[pass] : tile_side;
-        std::uint32_t begun = 0;  // squares, one bit each
+        if (!list_tiles_of(block, worker)) return false;
         bool done = true;
-        const bool painted = paints_at_once(block, pass);
+        const bool painted = paints_at_once(block);
         if (painted) worker.paint_empty(rect);
         for_squares_in(tiles(), rect, [&](std::size_t tile) {
-            if (!done || !selected(tile)) return;
-            const PixelRect corner = tiles().rect(tile);
-            const int column = (corner.x0 - rect.x0) / square;
-            const int row = (corner.y0 - rect.y0) / square;
-            const std::uint32_t bit = 1u << (row * (TileGrid::block_side / square) + column);
-            if (sparse && (begun & bit) != 0) return;
-            begun |= bit;
-            done = take_tile(tile, pass, square, painted, worker);
+            if (done && selected(tile)) done = take_tile(tile, painted, worker);
         });
-        if (strides_[pass] <= tile_side) lists_.forget_block(block);  // each tile has its own
+        lists_.forget_block(block);  // each tile has its own
         return done;
     }
 
-    bool is_listed_empty(std::size_t block) const {
-        const ElementList* const list = lists_.of_block(block);
-        return list != nullptr && list->certainly_empty;
-    }
-
     // Whether all tiles of the block are empty, and this job's, and not all painted so already.
-    bool paints_at_once(std::size_t block, std::size_t pass) const {
+    bool paints_at_once(std::size_t block) const {
         // Shading tells by what a tile shows whether it is to be painted.
-        if (pass > 0 || settings_.task == Task::shade) return false;
-        if (!is_listed_empty(block)) return false;
+        if (settings_.task == Task::shade) return false;
+        const ElementList* const list = lists_.of_block(block);
+        if (list == nullptr || !list->certainly_empty) return false;
         bool all = true, all_stand = true;
         for_squares_in(tiles(), blocks().rect(block), [&](std::size_t tile) {
             all = all && selected(tile) && !canvas_.tiles[tile].has_list;
@@ -314,49 +267,34 @@ class FrameJob::Work {
     }
 
     // `painted`: where it is empty it has its colour already.
-    bool take_tile(std::size_t index, std::size_t pass, int square, bool painted,
-                   TileWorker& worker) {
+    bool take_tile(std::size_t index, bool painted, TileWorker& worker) {
         if (stopped()) return false;
         TileState& tile = canvas_.tiles[index];
-        const bool first = tile_begun_[index] == 0;
-        const bool last = pass + 1 == strides_.size();
-        if (!first && strides_[pass] >= tile_side) return true;  // it has its one pixel
-        tile_begun_[index] = 1;
-        if (first) {
-            if (!tile.has_list) {
-                tile.list = lists_.of_tile(index, worker.counts);
-                tile.has_list = true;
-            }
-            ++worker.tiles;
-            if (settings_.task != Task::shade && !tile.list.certainly_empty) {
-                worker.mark_reached(tile.list);
-            }
+        if (!tile.has_list) {
+            tile.list = lists_.of_tile(index, worker.counts);
+            tile.has_list = true;
+        }
+        ++worker.tiles;
+        if (settings_.task != Task::shade && !tile.list.certainly_empty) {
+            worker.mark_reached(tile.list);
         }
         bool done = true, same = false;
         if (settings_.task == Task::shade) {
             same = stands_empty(index);
             done = same || worker.shade_again(index);
         } else if (!tile.list.certainly_empty) {
-            // Of a larger square the one pixel of the first tile that is selected, wherever that is.
-            done = worker.trace(index, std::min(strides_[pass], tile_side), first);
-        } else if (first) {
+            done = worker.trace(index);
+        } else {
             same = !painted && stands_empty(index);
             if (!painted && !same) worker.paint_empty(tiles().rect(index));
             worker.leave_empty(index);
         }
-        const bool has_new = first || !tile.list.certainly_empty;
-        if (done && has_new) notify(index, square, same);
-        if (done && last && !settings_.keep_lists) {
+        if (done && settings_.on_tile) settings_.on_tile({index, tiles().rect(index), same});
+        if (done && !settings_.keep_lists) {
             tile.has_list = false;
             tile.list = {};
         }
         return done;
-    }
-
-    void notify(std::size_t tile, int square, bool same) const {
-        if (settings_.on_tile) {
-            settings_.on_tile({tile, tiles().rect(tile), canvas_.tiles[tile].stride, square, same});
-        }
     }
 
     const Picture picture_;
@@ -364,13 +302,10 @@ class FrameJob::Work {
     const JobSettings settings_;
     std::atomic<bool> stop_{false};
     TileLists lists_;
-    std::vector<int> strides_;  // pass by pass
 
     std::vector<std::size_t> region_order_, block_order_;
     std::size_t steps_ = 0;
     std::atomic<std::size_t> next_{0};
-    std::vector<std::uint8_t> tile_begun_;  // by this job; whoever is at the tile's block uses it
-    std::vector<std::atomic<int>> passes_done_;  // by block
 
     std::atomic<bool> cut_short_{false};
     Clock::time_point started_, finished_;

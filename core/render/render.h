@@ -1,5 +1,5 @@
-// A picture painted on a canvas by worker threads: tile by tile, coarse to fine if asked, in full
-// or in part, until it is done or cancelled.
+// A picture painted on a canvas by worker threads: tile by tile, in full or in part, until it is done or
+// cancelled.
 #pragma once
 
 #include <chrono>
@@ -23,23 +23,14 @@ enum class Task : std::uint8_t {
 };
 
 enum class Order : std::uint8_t {
-    plain,       // each tile once, all of its pixels
-    from_focus,  // the same, the blocks around the focus first
-    // One pixel for each 64 x 64, then 8 x 8, then all: none is traced twice. Where few tiles are
-    // selected it begins with smaller squares, 8 x 8 at the least; what begins with 16 x 16 goes on
-    // to all at once.
-    coarse_to_fine,
+    plain,       // block by block, row by row
+    from_focus,  // the blocks around the focus first
 };
 
-// Pixels whose column and row are multiples of `stride` are in the frame now. Those between that
-// are not traced yet hold nothing new.
+// All pixels of the tile are in the frame now.
 struct TileNotice {
     std::size_t tile;
     PixelRect rect;
-    int stride;  // 16, 8 or 1
-    // Coarse to fine, 64 or 32 while this is the only selected tile begun of the square of so many
-    // pixels a side, counted from the picture's corner: until others come it stands for them all.
-    int square;
     // Nothing in the frame is another than before: a tile that was without a surface and is.
     bool same = false;
 };
@@ -55,7 +46,7 @@ struct JobSettings {
     std::vector<std::uint32_t> recolored;
     // One value for each tile of the canvas, not 0 where it is to be done; empty: all of them.
     std::vector<std::uint8_t> selected;
-    // From the focus and coarse to fine, the pixel around which each pass begins; -1, -1: the middle.
+    // From the focus, the pixel of it; -1, -1: the middle.
     int focus_i = -1, focus_j = -1;
     // Called by the workers, several at a time, never twice at a time for one tile. It may read the
     // pixels of that tile that the notice names until it returns. Must not throw.

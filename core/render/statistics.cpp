@@ -20,7 +20,7 @@ PixelStatistics pixel_statistics(const Canvas& canvas) {
     PixelStatistics sum;
     sum.tiles = canvas.tiles.size();
     for (const TileState& tile : canvas.tiles) {
-        if (tile.stride == 0) continue;
+        if (!tile.traced) continue;
         for (std::size_t status = 0; status < sum.pixels.size(); ++status) {
             sum.pixels[status] += tile.pixels[status];
         }

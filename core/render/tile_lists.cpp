@@ -6,6 +6,18 @@
 #include "core/render/camera.h"
 
 namespace ivory {
+namespace {
+
+// Short: whoever is at it has at most the rest of one step to do. False: cancelled.
+bool wait_until(const std::atomic<bool>& done, const std::atomic<bool>& stop) {
+    while (!done.load(std::memory_order_acquire)) {
+        if (stop.load(std::memory_order_relaxed)) return false;
+        std::this_thread::yield();
+    }
+    return true;
+}
+
+}  // namespace
 
 TileLists::TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
                      int samples)
@@ -44,7 +56,7 @@ ElementList TileLists::narrowed(const ElementList& parent, const PixelRect& rect
 
 void TileLists::make_region(std::size_t region, Counts& counts) {
     region_lists_[region] = narrowed(all_clusters_, canvas_.grid.regions.rect(region), counts);
-    region_done_[region].store(1, std::memory_order_release);
+    region_done_[region].store(true, std::memory_order_release);
 }
 
 bool TileLists::make_block(std::size_t block, Counts& counts) {
@@ -52,7 +64,7 @@ bool TileLists::make_block(std::size_t block, Counts& counts) {
     // The same from either, so that it does not matter who else asks for the region's.
     const std::size_t region = region_of(block);
     const bool planned = region_is_planned_[region] != 0;
-    if (planned && !wait_until(region_done_[region], 1, stop_)) return false;
+    if (planned && !wait_until(region_done_[region], stop_)) return false;
     block_lists_[block] =
         narrowed(planned ? region_lists_[region]
                          : narrowed(all_clusters_, canvas_.grid.regions.rect(region), counts),
@@ -71,14 +83,6 @@ CommonBundle TileLists::common(std::size_t block) const {
                                     seen(canvas_.grid.blocks.rect(block))),
             .list = &*block_lists_[block],
             .number = numbers.fetch_add(1, std::memory_order_relaxed) + 1};
-}
-
-bool wait_until(const std::atomic<int>& done, int least, const std::atomic<bool>& stop) {
-    while (done.load(std::memory_order_acquire) < least) {
-        if (stop.load(std::memory_order_relaxed)) return false;
-        std::this_thread::yield();
-    }
-    return true;
 }
 
 }  // namespace ivory

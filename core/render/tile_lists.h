@@ -56,13 +56,9 @@ class TileLists {
     const int samples_;
     const ElementList all_, all_clusters_;
     std::vector<ElementList> region_lists_;
-    std::vector<std::atomic<int>> region_done_;
+    std::vector<std::atomic<bool>> region_done_;
     std::vector<std::uint8_t> region_is_planned_;
     std::vector<std::optional<ElementList>> block_lists_;
 };
-
-// Until done >= least. Short: whoever is at it has at most the rest of one step to do. False:
-// cancelled.
-bool wait_until(const std::atomic<int>& done, int least, const std::atomic<bool>& stop);
 
 }  // namespace ivory

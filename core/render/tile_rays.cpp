@@ -1,14 +1,6 @@
 #include "core/render/tile_rays.h"
 
 namespace ivory {
-namespace {
-
-// Whether column and row, counted from the picture's corner, fall on the stride: those of a tile do
-// so alike, its corner being a multiple of 16.
-bool on_stride(int i, int j, int stride) { return i % stride == 0 && j % stride == 0; }
-int first_on(int stride, int from) { return (from + stride - 1) / stride * stride; }
-
-}  // namespace
 
 // The one of that number, or of that rectangle where the tile is cut off.
 Bundle TileRays::bundle(std::size_t number, const PixelRect& part_of_tile) const {
@@ -100,20 +92,6 @@ void TileRays::gather_ring(const View& view, int width, int height, const PixelR
     rays.parts[0].first_part = 1;
     rays.parts[0].end_of_parts = static_cast<std::uint32_t>(rays.part_count);
     this->end(view);
-}
-
-void TileRays::gather(const View& view, int width, int height, const PixelRect& rect, int stride,
-                      int coarser, bool in_parts) {
-    begin(view, width, height, rect, in_parts, 1);
-    for_squares(rect, [&](const PixelRect& square) {
-        for (int j = first_on(stride, square.y0); j < square.y1; j += stride) {
-            for (int i = first_on(stride, square.x0); i < square.x1; i += stride) {
-                if (coarser > 0 && on_stride(i, j, coarser)) continue;
-                add(width, rect, i, j);
-            }
-        }
-    });
-    end(view);
 }
 
 }  // namespace ivory

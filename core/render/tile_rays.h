@@ -56,9 +56,6 @@ struct TileRays {
     // Those of the pixels around `rect`, in pieces of four side by side; the picture's edge is none to them.
     // `place`: of an array of two more columns and rows than the tile has.
     void gather_ring(const View& view, int width, int height, const PixelRect& rect, int samples);
-    // Those on `stride` but not on `coarser` (0: none is left out).
-    void gather(const View& view, int width, int height, const PixelRect& rect, int stride,
-                int coarser, bool in_parts);
 
     // Calls visit.operator()<count>(k, p) for runs of rays, from k on, whose pixels stand side by
     // side in a row of the frame, from p on.

@@ -40,7 +40,7 @@ void TileWorker::paint_empty(const PixelRect& rect) const {
 
 void TileWorker::leave_empty(std::size_t index) const {
     TileState& tile = canvas_.tiles[index];
-    tile.stride = 1;
+    tile.traced = true;
     tile.empty = true;
     tile.pixels = {};
     tile.pixels[static_cast<std::size_t>(Status::miss)] =
@@ -57,18 +57,17 @@ void TileWorker::mark_reached(const ElementList& list) {
     }
 }
 
-bool TileWorker::trace(std::size_t index, int stride, bool first) {
-    const TileState& tile = canvas_.tiles[index];
+bool TileWorker::trace(std::size_t index) {
     if (!share(index)) return false;
-    gather(index, stride, first ? 0 : tile.stride);
+    gather(index);
     const Field& field = *picture_.field;
     surfaces_.exact = !canvas_.frame.surface.empty();
-    trace_bundle(field, tile.list, lists_.all(), tile_.rays, *picture_.method, picture_.options,
-                 isolations_, wants_surface() ? &surfaces_ : nullptr, counts);
+    trace_bundle(field, canvas_.tiles[index].list, lists_.all(), tile_.rays, *picture_.method,
+                 picture_.options, isolations_, wants_surface() ? &surfaces_ : nullptr, counts);
     if (stopped()) return false;
     const Clock::time_point traced_at = Clock::now();
     paint();
-    commit(index, stride, first);
+    commit(index);
     shading += Clock::now() - traced_at;
     return true;
 }
@@ -84,10 +83,11 @@ bool TileWorker::share(std::size_t tile) {
     return true;
 }
 
-void TileWorker::gather(std::size_t tile, int stride, int coarser, bool with_parts) {
+void TileWorker::gather(std::size_t tile) {
     tile_.gather(picture_.view, canvas_.frame.width, canvas_.frame.height,
-                 canvas_.grid.tiles.rect(tile), stride, coarser,
-                 with_parts && canvas_.tiles[tile].list.most_elements() >= Descent::parts_elements);
+                 canvas_.grid.tiles.rect(tile),
+                 canvas_.tiles[tile].list.most_elements() >= Descent::parts_elements,
+                 [](int, int) { return true; });
 }
 
 // The surface at those m that are finite; the others keep theirs.
@@ -121,34 +121,26 @@ void TileWorker::commit_run(std::size_t k, std::size_t p, bool colored, Looks* l
     if (!frame.surface.empty()) copy(surfaces_.points, k, frame.surface, p);
 }
 
-void TileWorker::commit(std::size_t index, int stride, bool first) {
+void TileWorker::commit(std::size_t index) {
     TileState& tile = canvas_.tiles[index];
-    if (first) {
-        tile.empty = false;
-        tile.pixels = {};
-        tile.enclosure_width_max = 0;
-        tile.unresolved_width_max = 0;
-    }
     const bool colored = settings_.task != Task::trace;
     Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
     if (looks != nullptr) {
-        if (first) {
-            looks->forget_all(pixels_in_tile);
-            tile.looked_at = {};
-        }
-        tile.looked_at.add(surfaces_.elements);
+        looks->forget_all(pixels_in_tile);
+        tile.looked_at = surfaces_.elements;
     }
     tile_.for_runs([&]<std::size_t count>(std::size_t k, std::size_t p) {
         commit_run<count>(k, p, colored, looks);
     });
     const BundleTally tally = tally_of(isolations_, tile_.size());
     for (std::size_t status = 0; status < tile.pixels.size(); ++status) {
-        tile.pixels[status] += static_cast<std::uint16_t>(tally.rays[status]);
+        tile.pixels[status] = static_cast<std::uint16_t>(tally.rays[status]);
     }
     // Primary rays have length 1, so that a span of t is a length.
-    tile.enclosure_width_max = std::max(tile.enclosure_width_max, tally.widest);
-    tile.unresolved_width_max = std::max(tile.unresolved_width_max, tally.widest_unresolved);
-    tile.stride = stride;
+    tile.enclosure_width_max = tally.widest;
+    tile.unresolved_width_max = tally.widest_unresolved;
+    tile.traced = true;
+    tile.empty = false;
 }
 
 // Whether an element with another colour than before is in the list.
@@ -177,15 +169,14 @@ bool TileWorker::shade_again(std::size_t index) {
     if (tile.empty) {
         paint_empty(canvas_.grid.tiles.rect(index));
         leave_empty(index);
-    } else if (tile.stride != 0) {  // else nothing is traced
+    } else if (tile.traced) {
         if (stopped()) return false;
         const bool looks_hold =
             !canvas_.looks.empty() && frame.surface.empty() && !is_recolored(tile);
-        if (looks_hold && tile.stride == 1) {
+        if (looks_hold) {
             paint_looks(index);
-        } else {
-            if (!looks_hold && !share(index)) return false;
-            if (!look_again(index, looks_hold)) return false;
+        } else if (!share(index) || !look_again(index)) {
+            return false;
         }
     }
     shading += Clock::now() - start;
@@ -221,13 +212,12 @@ void TileWorker::paint_looks(std::size_t index) {
     }
 }
 
-// The surface and its colours at the t that stand in the frame, unless they are known. False:
-// cancelled on the way.
-bool TileWorker::look_again(std::size_t index, bool looks_hold) {
+// The surface and its colours at the t that stand in the frame. False: cancelled on the way.
+bool TileWorker::look_again(std::size_t index) {
     Frame& frame = canvas_.frame;
     TileState& tile = canvas_.tiles[index];
     Looks* const looks = canvas_.looks.empty() ? nullptr : &canvas_.looks[index];
-    gather(index, tile.stride, 0, !looks_hold);
+    gather(index);
     surfaces_.exact = !frame.surface.empty();
     surfaces_.clear(tile_.size());
     std::array<double, pixels_in_tile> m;
@@ -236,19 +226,14 @@ bool TileWorker::look_again(std::size_t index, bool looks_hold) {
             const bool hit = possibly_hit(frame.status[p + i]);
             m[k + i] = hit ? midpoint(frame.t(p + i)) : infinity<double>;
         }
-        if (looks_hold) surfaces_.take<count>(k, *looks, tile_.place[k]);
     });
-    if (!looks_hold) {
-        find_surface(tile.list, m);
-        if (stopped()) return false;
-        tile.looked_at = surfaces_.elements;
-    }
+    find_surface(tile.list, m);
+    if (stopped()) return false;
+    tile.looked_at = surfaces_.elements;
     paint();
     tile_.for_runs([&]<std::size_t count>(std::size_t k, std::size_t p) {
         std::copy_n(&colors_[k], count, &frame.color[p]);
-        if (looks != nullptr && !looks_hold) {
-            looks->take<count>(tile_.place[k], surfaces_, k);
-        }
+        if (looks != nullptr) looks->take<count>(tile_.place[k], surfaces_, k);
         if (frame.surface.empty()) return;
         for (std::size_t i = 0; i < count; ++i) {
             if (!possibly_hit(frame.status[p + i])) continue;

@@ -34,9 +34,8 @@ class alignas(128) TileWorker {
     // Tiles of another block come next.
     void leave_block() { common_.number = 0; }
 
-    // The pixels on `stride` that the tile lacks; its list is there and not empty. `first`: by this
-    // job. False: cancelled on the way.
-    bool trace(std::size_t tile, int stride, bool first);
+    // Its list is there and not empty. False: cancelled on the way.
+    bool trace(std::size_t tile);
     // Colours, lights and background anew, from the t that stand in the frame. Likewise.
     bool shade_again(std::size_t tile);
     // Misses, all over the rectangle, and all over the tile.
@@ -58,17 +57,17 @@ class alignas(128) TileWorker {
     bool wants_surface() const {
         return shaded() || !canvas_.frame.surface.empty() || !canvas_.looks.empty();
     }
-    void gather(std::size_t tile, int stride, int coarser, bool with_parts = true);
+    void gather(std::size_t tile);
     bool share(std::size_t tile);
     void find_surface(const ElementList& list, const std::array<double, pixels_in_tile>& m);
     void paint();
-    void commit(std::size_t tile, int stride, bool first);
+    void commit(std::size_t tile);
     template <std::size_t count>
     void commit_run(std::size_t k, std::size_t p, bool colored, Looks* looks) const;
     bool reached_by_recolored(const ElementList& list) const;
     bool is_recolored(const TileState& tile) const;
     void paint_looks(std::size_t tile);
-    bool look_again(std::size_t tile, bool looks_hold);
+    bool look_again(std::size_t tile);
 
     const Picture& picture_;
     Canvas& canvas_;

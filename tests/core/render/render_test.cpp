@@ -15,7 +15,6 @@
 #include <random>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/render/statistics.h"
@@ -186,7 +185,7 @@ TEST(Render, SmallPicturesOfCrowdedScenesLeaveNoRayAlone) {
 
 TEST(Render, BytesDoNotDependOnThreadsOrOrder) {
     for (const int threads : {1, 2, 4, 7}) {
-        for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
+        for (const Order order : {Order::plain, Order::from_focus}) {
             for (const bool keep_lists : {false, true}) {
                 Canvas canvas(frame_width, frame_height, true);
                 JobSettings settings;
@@ -269,11 +268,11 @@ class Recorder final : public Method {
     mutable std::map<std::array<double, 3>, int> times_;
 };
 
-TEST(Render, CoarseToFineTracesNoPixelTwice) {
+TEST(Render, NoPixelIsTracedTwice) {
     Scene scene;
     scene.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 30};
     scene.elements = {{.skeleton = PointSkeleton{}, .width = 10}};  // fills the picture
-    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus}) {
         const Recorder recorder;
         Picture picture = picture_of(scene);
         picture.method = &recorder;
@@ -287,107 +286,30 @@ TEST(Render, CoarseToFineTracesNoPixelTwice) {
     }
 }
 
-TEST(Render, CoarseToFineDoesTheSameWork) {
-    JobSettings settings;
-    Canvas canvas(frame_width, frame_height, false);
-    const JobReport plain = render(picture_of(mixed_scene()), canvas, settings);
-    settings.order = Order::coarse_to_fine;
-    const JobReport coarse = render(picture_of(mixed_scene()), canvas, settings);
-    EXPECT_EQ(plain.counts.evaluations, coarse.counts.evaluations);
-    EXPECT_EQ(plain.counts.element_evaluations, coarse.counts.element_evaluations);
-    EXPECT_EQ(plain.elements_reached, coarse.elements_reached);
-    EXPECT_EQ(plain.tiles_traced, coarse.tiles_traced);
-    EXPECT_GT(plain.counts.evaluations, 0u);
-}
-
-TEST(Render, NoticesComeInOrderAndNameFinalPixels) {
+TEST(Render, EachTileIsToldOnceWithItsFinalPixels) {
     const Picture picture = picture_of(mixed_scene());
     Canvas expected(frame_width, frame_height, false);
     render(picture, expected, {});
 
     Canvas canvas(frame_width, frame_height, false);
-    std::vector<std::atomic<int>> stride(canvas.tiles.size());
-    std::vector<std::atomic<int>> inside(canvas.tiles.size());
+    std::vector<std::atomic<int>> told(canvas.tiles.size());
     std::atomic<int> wrong{0};
     JobSettings settings;
-    settings.order = Order::coarse_to_fine;
+    settings.order = Order::from_focus;
     settings.threads = 3;
     settings.on_tile = [&](const TileNotice& notice) {
-        if (inside[notice.tile]++ != 0) ++wrong;
-        const int before = stride[notice.tile].exchange(notice.stride);
-        // so few tiles begin with four pixels each
-        if (notice.stride != 1 && before != 0) ++wrong;
-        if (notice.square != 16) ++wrong;
+        ++told[notice.tile];
         if (notice.rect != canvas.grid.tiles.rect(notice.tile)) ++wrong;
-        for (int j = notice.rect.y0; j < notice.rect.y1; j += notice.stride) {
-            for (int i = notice.rect.x0; i < notice.rect.x1; i += notice.stride) {
+        for (int j = notice.rect.y0; j < notice.rect.y1; ++j) {
+            for (int i = notice.rect.x0; i < notice.rect.x1; ++i) {
                 const std::size_t p = canvas.frame.at(i, j);
                 if (canvas.frame.color[p] != expected.frame.color[p]) ++wrong;
             }
         }
-        --inside[notice.tile];
     };
     render(picture, canvas, settings);
     EXPECT_EQ(wrong, 0);
-    for (const std::atomic<int>& last : stride) EXPECT_EQ(last, 1);
-}
-
-// One tile for each 64 x 64 pixels, then the others: of those that are selected, and the fewer
-// these are the smaller the first squares.
-TEST(Render, SquaresHaveATileEachBeforeAnyHasTwo) {
-    constexpr int width = 900, height = 760;  // 57 x 48 tiles
-    for (const auto& [share, first_square] : {std::pair(1, 64), {2, 32}, {7, 16}}) {
-        Canvas canvas(width, height, false);
-        std::vector<std::size_t> begun;
-        std::vector<int> squares;
-        JobSettings settings;
-        settings.order = Order::coarse_to_fine;
-        settings.selected.resize(canvas.tiles.size());
-        for (std::size_t t = 0; t < canvas.tiles.size(); ++t)
-            settings.selected[t] = t * 11 % 7 * static_cast<std::size_t>(share) < 7;
-        FrameJob* running = nullptr;
-        std::atomic<bool> started{false};
-        settings.on_tile = [&](const TileNotice& notice) {
-            if (notice.stride <= 8 && !canvas.tiles[notice.tile].empty) {
-                while (!started) std::this_thread::yield();
-                running->cancel();
-                return;
-            }
-            begun.push_back(notice.tile);
-            squares.push_back(notice.square);
-        };
-        FrameJob job(picture_of(mixed_scene(), "proved", width, height), canvas, settings);
-        running = &job;
-        started = true;
-        job.finish();
-
-        std::set<std::size_t> taken;  // squares
-        for (std::size_t k = 0; k < begun.size(); ++k) {
-            const PixelRect rect = canvas.grid.tiles.rect(begun[k]);
-            if (first_square == 16) continue;
-            const std::size_t square = Squares(width, height, first_square).at(rect.x0, rect.y0);
-            const bool is_first = taken.insert(square).second;
-            // an empty block is done at once
-            const bool leaves_open = squares[k] < first_square && canvas.tiles[begun[k]].empty;
-            EXPECT_TRUE(leaves_open || is_first == (squares[k] >= first_square)) << begun[k];
-        }
-        for (int side = 16; side <= 64; side *= 2)
-            EXPECT_EQ(std::count(squares.begin(), squares.end(), side) > 0,
-                      side == first_square || side == 16);
-        // all of the first pass before anything of the next
-        std::set<std::size_t> squares_to_begin;
-        for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
-            const PixelRect rect = canvas.grid.tiles.rect(t);
-            if (settings.selected[t] != 0)
-                squares_to_begin.insert(Squares(width, height, first_square).at(rect.x0, rect.y0));
-        }
-        std::set<std::size_t> squares_begun;
-        for (const std::size_t t : begun) {
-            const PixelRect rect = canvas.grid.tiles.rect(t);
-            squares_begun.insert(Squares(width, height, first_square).at(rect.x0, rect.y0));
-        }
-        EXPECT_EQ(squares_begun, squares_to_begin);
-    }
+    for (const std::atomic<int>& times : told) EXPECT_EQ(times, 1);
 }
 
 // The statuses that are in the frame, counted one by one.
@@ -401,7 +323,7 @@ std::array<std::uint64_t, 5> counted(const Frame& frame) {
 
 // Tiles of 256 pixels, and tiles that the picture's edge cuts off.
 TEST(Render, TheTallyIsThatOfThePixels) {
-    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus}) {
         Canvas canvas(frame_width, frame_height, false);
         JobSettings settings;
         settings.order = order;
@@ -414,8 +336,7 @@ TEST(Render, TheTallyIsThatOfThePixels) {
     }
 }
 
-// Of any tiles, be they at the corners of the squares that a first pass takes or not: each of their
-// pixels is traced, and none is left over from the picture before.
+// Of any tiles each pixel is traced, and none is left over from the picture before.
 TEST(Render, SelectedTilesAreTracedWhole) {
     constexpr int width = 900, height = 760;
     const Picture picture = picture_of(mixed_scene(), "proved", width, height);
@@ -431,7 +352,7 @@ TEST(Render, SelectedTilesAreTracedWhole) {
         Canvas canvas(width, height, false);
         render(picture_before, canvas, {});
         JobSettings settings;
-        settings.order = Order::coarse_to_fine;
+        settings.order = Order::from_focus;
         settings.threads = 2;
         for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
             settings.selected.push_back(random() % one_in == 0);
@@ -453,23 +374,17 @@ TEST(Render, SelectedTilesAreTracedWhole) {
 }
 
 TEST(Render, TheFocusComesFirst) {
-    for (const Order order : {Order::from_focus, Order::coarse_to_fine}) {
-        Canvas canvas(600, 400, false);
-        Scene scene = mixed_scene();
-        std::vector<PixelRect> seen;
-        JobSettings settings;
-        settings.order = order;
-        settings.focus_i = 590;
-        settings.focus_j = 10;
-        settings.on_tile = [&](const TileNotice& notice) { seen.push_back(notice.rect); };
-        render(picture_of(scene, "proved", 600, 400), canvas, settings);
-        ASSERT_FALSE(seen.empty());
-        EXPECT_GE(seen.front().x0, 576);
-        EXPECT_LT(seen.front().y0, 64);
-        if (order == Order::from_focus) {
-            EXPECT_EQ(seen.size(), canvas.tiles.size());
-        }
-    }
+    Canvas canvas(600, 400, false);
+    std::vector<PixelRect> seen;
+    JobSettings settings;
+    settings.order = Order::from_focus;
+    settings.focus_i = 590;
+    settings.focus_j = 10;
+    settings.on_tile = [&](const TileNotice& notice) { seen.push_back(notice.rect); };
+    render(picture_of(mixed_scene(), "proved", 600, 400), canvas, settings);
+    ASSERT_EQ(seen.size(), canvas.tiles.size());
+    EXPECT_GE(seen.front().x0, 576);
+    EXPECT_LT(seen.front().y0, 64);
 }
 
 TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
@@ -478,8 +393,8 @@ TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
     render(picture, expected, {});
     constexpr Rgba8 untouched{1, 2, 3, 4};  // a is 255 in every pixel that is drawn
 
-    for (const int notices : {0, 1, 5, 40, 100, 150, 200}) {
-        for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
+    for (const int notices : {0, 1, 5, 20, 40, 59, 60}) {
+        for (const Order order : {Order::plain, Order::from_focus}) {
             Canvas canvas(frame_width, frame_height, false);
             for (std::size_t p = 0; p < canvas.frame.size(); ++p) canvas.frame.color[p] = untouched;
             std::mutex mutex;
@@ -507,16 +422,14 @@ TEST(Render, ACancelledJobLeavesEveryTileWhatItsStateSays) {
             for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
                 const TileState& tile = canvas.tiles[t];
                 const PixelRect rect = canvas.grid.tiles.rect(t);
-                if (tile.stride == 1) ++done;
+                if (tile.traced) ++done;
                 std::size_t pixels = 0;
                 for (int j = rect.y0; j < rect.y1; ++j) {
                     for (int i = rect.x0; i < rect.x1; ++i) {
                         const std::size_t p = canvas.frame.at(i, j);
-                        const bool traced =
-                            tile.stride > 0 && i % tile.stride == 0 && j % tile.stride == 0;
                         ASSERT_EQ(canvas.frame.color[p],
-                                  traced ? expected.frame.color[p] : untouched);
-                        pixels += traced;
+                                  tile.traced ? expected.frame.color[p] : untouched);
+                        pixels += tile.traced;
                     }
                 }
                 EXPECT_EQ(std::accumulate(tile.pixels.begin(), tile.pixels.end(), std::size_t{0}),
@@ -531,7 +444,7 @@ TEST(Render, AJobThatIsDroppedIsCancelled) {
     Canvas canvas(2000, 2000, false);
     { const FrameJob job(picture_of(mixed_scene(), "proved", 2000, 2000), canvas, {}); }
     std::size_t done = 0;
-    for (const TileState& tile : canvas.tiles) done += tile.stride == 1;
+    for (const TileState& tile : canvas.tiles) done += tile.traced;
     EXPECT_LT(done, canvas.tiles.size());
 }
 
@@ -539,7 +452,6 @@ TEST(Render, WhatIsCancelledCanBeCompleted) {
     const Picture picture = picture_of(mixed_scene());
     Canvas canvas(frame_width, frame_height, true);
     JobSettings settings;
-    settings.order = Order::coarse_to_fine;
     settings.keep_lists = true;
     for (int n = 0; n < 20; ++n) {
         FrameJob job(picture, canvas, settings);
@@ -555,7 +467,7 @@ TEST(Render, OnlySelectedTilesAreTouched) {
     const Picture picture = picture_of(mixed_scene());
     Canvas expected(frame_width, frame_height, false);
     render(picture, expected, {});
-    for (const Order order : {Order::plain, Order::from_focus, Order::coarse_to_fine}) {
+    for (const Order order : {Order::plain, Order::from_focus}) {
         Canvas canvas(frame_width, frame_height, false);
         JobSettings settings;
         settings.order = order;
@@ -572,7 +484,7 @@ TEST(Render, OnlySelectedTilesAreTouched) {
         EXPECT_TRUE(report.complete);
         EXPECT_EQ(report.tiles_traced, noticed.size());
         for (std::size_t t = 0; t < canvas.tiles.size(); ++t) {
-            EXPECT_EQ(canvas.tiles[t].stride, t % 3 == 0 ? 1 : 0);
+            EXPECT_EQ(canvas.tiles[t].traced, t % 3 == 0);
             EXPECT_EQ(noticed.contains(t), t % 3 == 0);
             if (t % 3 != 0) continue;
             const PixelRect rect = canvas.grid.tiles.rect(t);
@@ -940,7 +852,7 @@ TEST(Render, OnePixelIsAPicture) {
     Canvas canvas(1, 1, false);
     JobSettings settings;
     settings.threads = 8;
-    settings.order = Order::coarse_to_fine;
+    settings.order = Order::from_focus;
     Scene scene;
     scene.elements = {{.skeleton = PointSkeleton{}}};
     EXPECT_TRUE(render(picture_of(scene, "proved", 1, 1), canvas, settings).complete);
@@ -964,7 +876,6 @@ TEST(Render, WhatAWorkerThrowsReachesTheCaller) {
     Canvas canvas(frame_width, frame_height, false);
     JobSettings settings;
     settings.threads = 3;
-    settings.order = Order::coarse_to_fine;
     EXPECT_THROW(render(picture, canvas, settings), std::bad_alloc);
 }
 
