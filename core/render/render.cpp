@@ -266,9 +266,9 @@ class FrameJob::Work {
         return !needed || lists_.make_block(block, worker.counts);
     }
 
-    // `painted`: where it is empty it has its colour already.
+    // `painted`: it is empty and has its colour already, so that nothing may come between.
     bool take_tile(std::size_t index, bool painted, TileWorker& worker) {
-        if (stopped()) return false;
+        if (!painted && stopped()) return false;
         TileState& tile = canvas_.tiles[index];
         if (!tile.has_list) {
             tile.list = lists_.of_tile(index, worker.counts);
