@@ -171,7 +171,7 @@ void add_render_options(CLI::App& call, RenderArguments& render) {
     add_value(call, "--samples", "N",
               "the mean of so many samples a pixel, a square of 1 to 8; default 1. --answers and "
               "--depth have all of them traced, and --answers is of the larger picture",
-              [&render](const std::string& text) { render.samples = read_samples(text); });
+              [&render](const std::string& text) { render.samples_a_side = read_samples(text); });
     add_value(
         call, "--stereo", "KIND",
         "for two eyes: side-by-side, twice as wide, or red-cyan. --answers has the left eye's "
@@ -270,8 +270,8 @@ void check(const RenderArguments& render) {
         throw UsageError(
             "--eyes says nothing without --stereo; add --stereo side-by-side or red-cyan");
     }
-    const long all =
-        static_cast<long>(render.width) * render.height * render.samples * render.samples;
+    const long all = static_cast<long>(render.width) * render.height * render.samples_a_side *
+                     render.samples_a_side;
     if (!render.answers.empty() && all > largest_picture) {
         throw UsageError("--answers would be of " + std::to_string(all) +
                          " samples; take fewer, at most " + std::to_string(largest_picture));

@@ -31,7 +31,7 @@ struct RenderArguments {
     std::string picture, depth, answers, statistics;
     int width = 1280, height = 720;  // pixels
     int repeat = 1;
-    int samples = 1;  // n: n x n a pixel
+    int samples_a_side = 1;  // of a pixel
     Stereo stereo = Stereo::none;
     std::optional<double> eyes;  // how far apart; without: core/render/camera.h
     WorkArguments work;

@@ -128,9 +128,8 @@ std::string text_of(const std::string& file, const Scene& scene, const Field& fi
     text += "box        " + text_of(field.box) + "\n";
     text += "camera     position " + text_of(camera.position) + ", target " +
             text_of(camera.target) + ", up " + text_of(camera.up) +
-            (camera.projection == Camera::Projection::orthographic
-                 ? ", orthographic, height " + number_text(height_of(camera))
-                 : ", fov " + number_text(camera.fov)) +
+            (camera.is_orthographic() ? ", orthographic, height " + number_text(height_of(camera))
+                                      : ", fov " + number_text(camera.fov)) +
             (scene.camera ? "" : " (framed for 1280x720)") + "\n";
     for (const SavedView& view : scene.views) text += "view       " + printable(view.name) + "\n";
     text += "lights     " +
@@ -171,16 +170,8 @@ std::string json_of(const std::string& file, const Scene& scene, const Field& fi
                         {"kernels", census.kernels}};
     json["box"] = json_of(field.box);
     json["reach_box"] = json_of(field.reach_box);
-    json["camera"] = {{"position", json_of(camera.position)},
-                      {"target", json_of(camera.target)},
-                      {"up", json_of(camera.up)},
-                      {"fov", camera.fov},
-                      {"framed", !scene.camera}};
-    if (camera.projection == Camera::Projection::orthographic) {
-        json["camera"]["projection"] =
-            projection_words[static_cast<std::size_t>(camera.projection)];
-        json["camera"]["height"] = height_of(camera);
-    }
+    json["camera"] = Json::parse(write_camera(with_height(camera)));
+    json["camera"]["framed"] = !scene.camera;
     json["views"] = scene.views.size();
     json["lights"] = scene.lights ? scene.lights->size() : default_lights().size();
     json["skipped"] = json_of_skips(scene);

@@ -83,13 +83,13 @@ struct Run {
 
 // What --answers writes is of the larger picture: all of it is traced.
 bool traces_larger(const RenderArguments& arguments) {
-    return arguments.samples > 1 && !arguments.answers.empty();
+    return arguments.samples_a_side > 1 && !arguments.answers.empty();
 }
 
 // On the canvases of the rendering before, where there are any.
 void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
                 const std::string& label, Progress& progress) {
-    const int times = traces_larger(arguments) ? arguments.samples : 1;
+    const int times = traces_larger(arguments) ? arguments.samples_a_side : 1;
     if (!eye.canvas) {
         eye.canvas = std::make_unique<Canvas>(arguments.width * times, arguments.height * times,
                                               !arguments.answers.empty());
@@ -98,9 +98,9 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
     JobSettings settings;
     settings.threads = arguments.work.threads;
     settings.task = task;
-    if (arguments.samples > 1 && times == 1) {
+    if (arguments.samples_a_side > 1 && times == 1) {
         if (!eye.sampled) {
-            eye.sampled = std::make_unique<SampledPicture>(*eye.canvas, arguments.samples,
+            eye.sampled = std::make_unique<SampledPicture>(*eye.canvas, arguments.samples_a_side,
                                                            !arguments.depth.empty());
         }
         settings.task = Task::sample;
@@ -121,8 +121,8 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
     eye.report = job.finish();
     if (!eye.report.complete) stop_if_interrupted();
     if (times > 1) {
-        eye.sampled =
-            std::make_unique<SampledPicture>(mean_of(eye.picture, *eye.canvas, arguments.samples));
+        eye.sampled = std::make_unique<SampledPicture>(
+            mean_of(eye.picture, *eye.canvas, arguments.samples_a_side));
     }
 }
 
@@ -272,7 +272,7 @@ void run(const RenderArguments& arguments) {
     statistics.method = arguments.work.method->name();
     statistics.options = arguments.work.options;
     statistics.camera = run.eyes[0].picture.view.camera;
-    statistics.samples = arguments.samples * arguments.samples;
+    statistics.samples = arguments.samples_a_side * arguments.samples_a_side;
     statistics.seconds = medians_of(runs);
     statistics.seconds.load = load_seconds;
     statistics.seconds.write = seconds_since(rendered);

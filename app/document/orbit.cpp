@@ -27,17 +27,10 @@ glm::dvec3 to_glm(const Vec3d& v) { return glm::dvec3(v.x, v.y, v.z); }
 
 Vec3d from_glm(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-double distance(const Camera& camera) {
-    const Vec3d line = camera.position - camera.target;
-    return std::hypot(line.x, line.y, line.z);
-}
+double distance(const Camera& camera) { return length_of(camera.position - camera.target); }
 
 // Half of what a perspective camera sees from top to bottom at distance 1.
 double slope(const Camera& camera) { return std::tan(glm::radians(camera.fov) / 2); }
-
-bool is_orthographic(const Camera& camera) {
-    return camera.projection == Camera::Projection::orthographic;
-}
 
 // Unit, from the target to the camera.
 Vec3d back_of(const Camera& camera) { return unit(camera.position - camera.target); }
@@ -112,8 +105,7 @@ Ray Projection::line_of_sight(WindowPoint at) const {
 
 double Projection::distance_to(Vec3d place) const {
     const Vec3d from_camera = place - camera_.position;
-    return is_orthographic() ? -dot(from_camera, back_)
-                             : std::hypot(from_camera.x, from_camera.y, from_camera.z);
+    return is_orthographic() ? -dot(from_camera, back_) : length_of(from_camera);
 }
 
 Vec3d Projection::towards_eye(Vec3d place) const {
@@ -184,7 +176,7 @@ Camera framed(const Projection& view, const Box3& given) {
     Camera camera = view.camera();
     camera.target = 0.5 * box.lo + 0.5 * box.hi;
     const Vec3d half = 0.5 * box.hi - 0.5 * box.lo;
-    const double radius = frame_margin * std::max(std::hypot(half.x, half.y, half.z), 1e-100);
+    const double radius = frame_margin * std::max(length_of(half), 1e-100);
     const double vertical = glm::radians(camera.fov) / 2;
     const double aspect = static_cast<double>(view.size().width) / view.size().height;
     const double horizontal = std::atan(std::tan(vertical) * aspect);
@@ -215,7 +207,7 @@ Camera in_projection(const Camera& camera, Camera::Projection projection) {
     if (camera.projection == projection) return camera;
     Camera other = camera;
     other.projection = projection;
-    if (is_orthographic(other)) {
+    if (other.is_orthographic()) {
         other.height = seen_height(camera);
     } else {
         const double away = height_of(camera) / (2 * slope(camera));
@@ -226,7 +218,7 @@ Camera in_projection(const Camera& camera, Camera::Projection projection) {
 }
 
 double seen_height(const Camera& camera) {
-    return is_orthographic(camera) ? height_of(camera) : 2 * distance(camera) * slope(camera);
+    return camera.is_orthographic() ? height_of(camera) : 2 * distance(camera) * slope(camera);
 }
 
 bool plane_is_before(const Camera& camera, const Box3& box) {
@@ -236,11 +228,10 @@ bool plane_is_before(const Camera& camera, const Box3& box) {
 // The room before the box is what a hand moves an element by at most before this is asked again, and
 // more: a plane that moved at every step would have the picture drawn anew as often.
 Camera with_plane_before(const Camera& camera, const Box3& box) {
-    if (!is_orthographic(camera) || plane_is_before(camera, box)) return camera;
+    if (!camera.is_orthographic() || plane_is_before(camera, box)) return camera;
     const Vec3d size = box.hi - box.lo;
-    const double room = std::max(std::hypot(size.x, size.y, size.z), height_of(camera));
-    Camera farther = camera;
-    farther.height = height_of(camera);
+    const double room = std::max(length_of(size), height_of(camera));
+    Camera farther = with_height(camera);
     farther.position = camera.target + (reach_towards(camera, box) + room) * back_of(camera);
     return unless_lost(farther, camera);
 }

@@ -21,9 +21,7 @@ class Projection {
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] WindowSize size() const { return size_; }
 
-    [[nodiscard]] bool is_orthographic() const {
-        return camera_.projection == Camera::Projection::orthographic;
-    }
+    [[nodiscard]] bool is_orthographic() const { return camera_.is_orthographic(); }
 
     // Where a place of the scene is seen; nothing where it lies behind a perspective camera or in its
     // plane. An orthographic one's plane hides surface, but not what is drawn over the picture: that

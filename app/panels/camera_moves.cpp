@@ -12,17 +12,13 @@ namespace ivory {
 
 namespace {
 
-bool is_orthographic(const Camera& camera) {
-    return camera.projection == Camera::Projection::orthographic;
-}
-
 // Around the surface of the scene as it stands, in a drag too.
 const Box3& surface_box(ViewerState& state) {
     return state.panels.surface.around(state.document.scene_value());
 }
 
 Camera before_surface(ViewerState& state, const Camera& camera) {
-    return is_orthographic(camera) ? with_plane_before(camera, surface_box(state)) : camera;
+    return camera.is_orthographic() ? with_plane_before(camera, surface_box(state)) : camera;
 }
 
 }  // namespace
@@ -36,7 +32,7 @@ void move_camera(ViewerState& state, const Camera& camera) {
 }
 
 void drag_camera_as_written(ViewerState& state, const Camera& camera) {
-    const bool section = is_orthographic(camera) && !plane_is_before(camera, surface_box(state));
+    const bool section = camera.is_orthographic() && !plane_is_before(camera, surface_box(state));
     state.view.move_on(camera, section);
 }
 
@@ -51,7 +47,7 @@ void set_projection(ViewerState& state, Camera::Projection projection) {
 }
 
 void keep_plane_before_surface(ViewerState& state) {
-    if (state.view.is_section || !is_orthographic(state.view.camera)) return;
+    if (state.view.is_section || !state.view.camera.is_orthographic()) return;
     // A drag of the threshold changes what all elements reach. In a large scene the room before the
     // surface has to serve until it ends.
     constexpr std::size_t most_in_a_frame = 500;

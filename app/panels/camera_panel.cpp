@@ -18,6 +18,7 @@
 #include "app/panels/parts.h"
 #include "app/panels/saved_views.h"
 #include "app/panels/scene_edits.h"
+#include "app/panels/settings.h"
 #include "app/panels/shown_text.h"
 #include "app/panels/text_field.h"
 #include "app/panels/theme.h"
@@ -63,7 +64,7 @@ void draw_projection(ViewerState& state) {
 // what is seen at the target.
 void draw_size(ViewerState& state) {
     const Camera camera = state.view.camera;
-    const bool parallel = camera.projection == Camera::Projection::orthographic;
+    const bool parallel = camera.is_orthographic();
     ImGui::BeginDisabled(parallel);
     label(state, "View angle");
     number_field(
@@ -75,7 +76,8 @@ void draw_size(ViewerState& state) {
     ImGui::BeginDisabled(!parallel);
     label(state, "Height");
     const double height = seen_height(camera), step = step_for(height);
-    number_field(state, {.id = "camera.height", .value = height, .step = step, .least = step},
+    number_field(state,
+                 {.id = "camera.height", .value = height, .step = step, .least = step},
                  field_width(), [](Camera& changed, double given) { changed.height = given; });
     ImGui::EndDisabled();
     if (!parallel) tooltip("What is seen from top to bottom at the target.");
@@ -84,9 +86,10 @@ void draw_size(ViewerState& state) {
 void draw_samples(ViewerState& state) {
     const std::array choices = {Choice{"1", "1"}, Choice{"4", "4"}, Choice{"16", "16"}};
     label(state, "Samples");
-    const std::size_t now = state.samples == 4 ? 2 : state.samples == 2 ? 1 : 0;
-    if (const auto clicked = choice_field(state, "view.samples", choices, now))
-        state.samples = *clicked == 2 ? 4 : *clicked == 1 ? 2 : 1;
+    const auto now = std::find(samples_to_choose.begin(), samples_to_choose.end(), state.samples);
+    const auto clicked = choice_field(state, "view.samples", choices,
+                                      static_cast<std::size_t>(now - samples_to_choose.begin()));
+    if (clicked) state.samples = samples_to_choose[*clicked];
 }
 
 void keep_view_and_name_it(ViewerState& state) {
@@ -177,12 +180,11 @@ void draw_views(ViewerState& state) {
     }
     ImGui::PopStyleVar();
     if (views.empty()) ImGui::TextDisabled("None is kept yet.");
-    const auto chosen = std::find_if(views.begin(), views.end(), [&](const SavedView& view) {
-        return state.panels.view == view.name;
-    });
-    if (chosen == views.end()) return;
+    const std::optional<std::string>& name = state.panels.view;
+    const auto chosen = name ? find_view(views, *name) : std::nullopt;
+    if (!chosen) return;
     ImGui::Dummy({0, px(state, 2)});
-    draw_chosen_view(state, *chosen);
+    draw_chosen_view(state, views[*chosen]);
 }
 
 }  // namespace ivory

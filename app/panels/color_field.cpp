@@ -17,6 +17,7 @@
 #include "app/panels/scene_edits.h"
 #include "app/panels/text_field.h"
 #include "app/panels/theme.h"
+#include "core/render/srgb.h"
 #include "core/scene/text.h"
 
 namespace ivory {
@@ -33,8 +34,7 @@ std::array<float, 3> srgb_of(const Color& linear) {
 }
 
 double linear_of(float srgb) {
-    const double s = std::clamp(static_cast<double>(srgb), 0.0, 1.0);
-    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+    return linear_of_srgb(std::clamp(static_cast<double>(srgb), 0.0, 1.0));
 }
 
 // "#FCDAB3", in sRGB.

@@ -79,8 +79,7 @@ void open_scene(ViewerState& state, const std::filesystem::path& path) {
         try {
             const Field field = compile(scene);
             const Camera camera = camera_of(scene, field, size.width, size.height);
-            const bool section = camera.projection == Camera::Projection::orthographic &&
-                                 !plane_is_before(camera, field.box);
+            const bool section = camera.is_orthographic() && !plane_is_before(camera, field.box);
             return DocumentView(camera, scene.camera, section);
         } catch (const Error& fault) {
             throw camera_fault(scene, path, fault);

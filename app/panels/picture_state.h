@@ -59,7 +59,7 @@ struct PictureState {
     bool surface_certainly_empty = false;             // proved: the wanted scene has no surface
 
     std::string
-        fault;  // one line: why there is no picture of the wanted scene; empty: there is, or will be
+        fault;  // one line: why there is no final picture of the wanted scene; empty: there will be
 
     // So many of the window's pixels a side are covered by one of the picture that is shown, but for
     // the share of its tiles that show every pixel. 1 and 1: all of them do.

@@ -2,11 +2,18 @@
 // of the camera.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/panels/viewer_state.h"
 
 namespace ivory {
+
+// Its place in the list.
+[[nodiscard]] std::optional<std::size_t> find_view(const std::vector<SavedView>& views,
+                                                   const std::string& name);
 
 // The view that is seen, under a name that no other has; it is the chosen one then.
 void keep_view(ViewerState& state);

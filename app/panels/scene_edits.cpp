@@ -29,8 +29,7 @@ bool has_fault(const Scene& scene, std::optional<std::size_t> selected) {
 // Of an orthographic camera without a height it is written out first: what follows from its place
 // would change with that.
 Camera changed_camera(const ViewerState& state, const std::function<void(Camera&)>& change) {
-    Camera camera = state.view.camera;
-    if (camera.projection == Camera::Projection::orthographic) camera.height = height_of(camera);
+    Camera camera = with_height(state.view.camera);
     change(camera);
     return camera;
 }

@@ -94,10 +94,12 @@ struct Access {
     }
 
     std::string take(const Samples& setting, const JsonValue& value) const {
-        const double number = value.kind() == JsonKind::number ? value.number() : NAN;
-        if (number != 1 && number != 4 && number != 16) return "1, 4 or 16";
-        all.*setting.value = static_cast<int>(number);
-        return "";
+        for (const int number : samples_to_choose) {
+            if (value.kind() != JsonKind::number || value.number() != number) continue;
+            all.*setting.value = number;
+            return "";
+        }
+        return "1, 4 or 16";
     }
 
     std::string text(const Samples& setting) const { return std::to_string(all.*setting.value); }

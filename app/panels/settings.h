@@ -5,6 +5,7 @@
 // on it are kept as they are.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,12 +19,15 @@ namespace ivory {
 // Points of the screen.
 inline constexpr int least_window_side = 64, largest_window_side = 32768;
 
+// A pixel, of the final picture.
+inline constexpr std::array samples_to_choose{1, 4, 16};
+
 struct UserSettings {
     Theme theme = Theme::dark;
     bool panels_shown = true, skeleton_shown = true;
     int window_width = 1280, window_height = 720;  // points, where it is not maximised
     bool window_maximised = false;
-    int samples = 16;  // a pixel: 1, 4 or 16
+    int samples = samples_to_choose.back();
     friend bool operator==(const UserSettings&, const UserSettings&) = default;
 };
 

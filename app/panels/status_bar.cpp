@@ -68,7 +68,7 @@ void draw_progress(const ViewerState& state) {
     ImGui::SameLine(0, px(state, 10));
     std::string text = "Final";
     if (!picture.fault.empty()) {
-        text = "No picture";
+        text = "Not final";
     } else if (!picture.final && picture.progress >= 1) {
         text = "Smoothing";
     } else if (!picture.final) {

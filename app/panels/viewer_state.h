@@ -51,7 +51,7 @@ struct ViewerState {
     bool panels_hidden = false;  // Tab
     bool help_shown = false;     // ?
     bool skeleton_shown = true;  // the overlay as a whole
-    int samples = 1;             // a side of a pixel, of the final picture: 1, 2 or 4
+    int samples = 1;             // a pixel, of the final picture: one of samples_to_choose
     Message message;
     std::optional<KeptArrow> arrow;  // of the last normal that was dragged
     PanelMemory panels;

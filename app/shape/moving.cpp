@@ -14,8 +14,6 @@ namespace {
 constexpr double shortest_arrow = 56, longest_arrow = 170;  // pixels at scale 1
 constexpr double rounding_pixels = 6;  // at least, from one round number to the next
 
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
-
 bool in_picture(const Projection& view, const Vec3d& place) {
     const auto seen = view.project(place);
     return seen && WindowRect{0, 0, view.size().width, view.size().height}.contains(*seen);
@@ -27,7 +25,7 @@ Vec3d radius_direction(const Projection& view, const Vec3d& center, const Vec3d&
                        double radius) {
     const Vec3d across = cross(unit(normal), view.back());
     // seen along the normal, all directions run across the line of sight
-    Vec3d direction = length(across) < 1e-6 ? view.right() : unit(across);
+    Vec3d direction = length_of(across) < 1e-6 ? view.right() : unit(across);
     const double rightward = dot(direction, view.right());
     if (std::abs(rightward) > 1e-9 ? rightward < 0 : dot(direction, view.top()) < 0)
         direction = -direction;
@@ -53,7 +51,7 @@ std::optional<double> distance_along(const Projection& view, const Vec3d& place,
     const Vec3d facing = view.back() - towards * direction;
     // seen from its end, a line is shorter than the hand is steady: down is nearer instead
     constexpr double end_on = 0.05;
-    if (length(facing) < end_on)
+    if (length_of(facing) < end_on)
         return std::copysign(dy * view.length_of_pixel(place), towards * dy);
     const auto seen = view.project(place);
     if (!seen) return std::nullopt;
@@ -62,7 +60,7 @@ std::optional<double> distance_along(const Projection& view, const Vec3d& place,
     const double t = dot(from_origin, facing) / dot(sight.direction, facing);
     // near the line's vanishing point the smallest move would lead out of the world
     constexpr double farthest = 20;  // times as far away as it was
-    if (!view.is_orthographic() && !(t > 0 && t <= farthest * length(from_origin)))
+    if (!view.is_orthographic() && !(t > 0 && t <= farthest * length_of(from_origin)))
         return std::nullopt;
     return dot(t * sight.direction - from_origin, direction);
 }
@@ -95,7 +93,7 @@ Vec3d shifted(Vec3d place, const Vec3d& by) {
 }
 
 double arrow_factor(const HandView& view, const Vec3d& center, const Vec3d& normal) {
-    const double arrow = view.arrow.value_or(length(normal));
+    const double arrow = view.arrow.value_or(length_of(normal));
     const double pixel = view.projection.length_of_pixel(center);
     return std::clamp(arrow, shortest_arrow * view.scale * pixel,
                       longest_arrow * view.scale * pixel) /
@@ -124,7 +122,7 @@ bool move_normal(Vec3d& normal, const Vec3d& center, const HandView& view,
     normal = shifted(normal, (1 / factor) * (*to - tip));
     if (motion.round) {
         // to a tenth or so of its length
-        const int exponent = exponent_above(length(normal) / 20);
+        const int exponent = exponent_above(length_of(normal) / 20);
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (moves_along(motion, axis)) normal[axis] = tidy(normal[axis], exponent);
     }

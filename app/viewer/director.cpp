@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <exception>
 #include <limits>
@@ -385,13 +386,22 @@ bool RenderSession::Director::sample(const PictureRequest& request) {
         sharp = board_.without_samples();
     }
     const bool in_steps =
-        request.samples > 2 && std::find(sharp.begin(), sharp.end(), 1) != sharp.end();
-    if (in_steps && !take_samples(request, 2, std::move(sharp))) return false;
-    return take_samples(request, request.samples, {});
+        request.samples > 4 && std::find(sharp.begin(), sharp.end(), 1) != sharp.end();
+    try {
+        if (in_steps && !take_samples(request, 4, std::move(sharp))) return false;
+        return take_samples(request, request.samples, {});
+    } catch (const std::bad_alloc&) {
+        const std::lock_guard lock(mutex_);
+        board_.fault = "out of memory for " + std::to_string(request.samples) +
+                       " samples a pixel; what is there stays";
+    }
+    settings_.wake();
+    return false;
 }
 
-bool RenderSession::Director::take_samples(const PictureRequest& request, int side,
+bool RenderSession::Director::take_samples(const PictureRequest& request, int samples,
                                            std::vector<std::uint8_t> selected) {
+    const auto side = static_cast<int>(std::lround(std::sqrt(samples)));
     SampledPicture sampled(canvas_.canvas(), side, false);
     JobSettings settings = job_settings(request);
     settings.task = Task::sample;

@@ -84,7 +84,7 @@ class RenderSession::Director {
     [[nodiscard]] bool refine(const PictureRequest& request);
     [[nodiscard]] bool make_exact(const PictureRequest& request);
     [[nodiscard]] bool sample(const PictureRequest& request);
-    [[nodiscard]] bool take_samples(const PictureRequest& request, int side,
+    [[nodiscard]] bool take_samples(const PictureRequest& request, int samples,
                                     std::vector<std::uint8_t> selected);
     [[nodiscard]] JobSettings job_settings(const PictureRequest& request) const;
     [[nodiscard]] bool run_on_canvas(const CanvasWork& work, Order order,

@@ -11,6 +11,7 @@
 #include "app/panels/camera_moves.h"
 #include "app/shape/shapes.h"
 #include "app/viewer/picking.h"
+#include "core/math/direction.h"
 #include "core/scene/scene_fault.h"
 
 namespace ivory {
@@ -197,8 +198,7 @@ void ViewportMouse::begin_drag(ViewerState& state) {
     start_ = scene.elements[grabbed_->element];
     arrow_ = arrow_of(as_it_stands(state), grabbed_->element);
     if (grabbed_->kind == GripKind::direction && !arrow_) {
-        const auto& n = std::get<Vec3d>(grabbed_->value);
-        arrow_ = std::hypot(n.x, n.y, n.z);
+        arrow_ = length_of(std::get<Vec3d>(grabbed_->value));
     }
     grabbed_from_ = grabbed_->place;
     grabbed_at_ = grabbed_->at;

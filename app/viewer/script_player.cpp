@@ -68,7 +68,7 @@ void ScriptPlayer::wait_final() {
     for (hand_.turn(); !viewer_.final() || viewer_.next_frame_wanted() == 0; hand_.turn()) {
         const PictureState& picture = viewer_.state().picture;
         if (!picture.fault.empty())
-            throw Error("there is no picture of " +
+            throw Error("there is no final picture of " +
                         file_label(viewer_.state().document.path().value_or("untitled")) + ": " +
                         picture.fault);
         if (seconds_since(start) > longest_wait)

@@ -24,7 +24,7 @@ struct PictureRequest {
     // When a first picture is wanted: one of every pixel if that can be done until then, else one of
     // so many that it can.
     std::chrono::steady_clock::time_point due;
-    int samples = 1;  // a side of a pixel, of the final picture
+    int samples = 1;  // a pixel, of the final picture: 1, 4, 9 ..
 };
 
 // All of a picture in fewer pixels, as `ivory render` draws it in that size, rows from the top. It

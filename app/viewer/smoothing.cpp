@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "core/render/srgb.h"
 
@@ -29,24 +29,16 @@ struct LinearPicture {
     std::vector<LinearPixel> pixels;
 };
 
-std::array<float, 256> make_linear_of_bytes() {
-    std::array<float, 256> light{};
-    for (std::size_t byte = 0; byte < light.size(); ++byte) {
-        const double s = static_cast<double>(byte) / 255;
-        light[byte] =
-            static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    }
-    return light;
-}
-
 LinearPicture linear_of(const CoarsePicture& picture) {
-    static const std::array<float, 256> light = make_linear_of_bytes();
+    const auto light = [&table = linear_of_bytes()](std::uint8_t byte) {
+        return static_cast<float>(table[byte]);
+    };
     LinearPicture result{static_cast<std::size_t>(picture.size.width),
                          static_cast<std::size_t>(picture.size.height),
                          {}};
     result.pixels.reserve(picture.color.size());
     for (const Rgba8& c : picture.color)
-        result.pixels.push_back({light[c.r], light[c.g], light[c.b]});
+        result.pixels.push_back({light(c.r), light(c.g), light(c.b)});
     return result;
 }
 

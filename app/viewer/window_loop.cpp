@@ -57,7 +57,7 @@ class Keeper {
         state.theme = now_.theme;
         state.panels_hidden = !now_.panels_shown;
         state.skeleton_shown = now_.skeleton_shown;
-        state.samples = now_.samples == 16 ? 4 : now_.samples == 4 ? 2 : 1;
+        state.samples = now_.samples;
         say_complaint(state);
     }
 
@@ -68,7 +68,7 @@ class Keeper {
         now_.theme = state.theme;
         now_.panels_shown = !state.panels_hidden;
         now_.skeleton_shown = state.skeleton_shown;
-        now_.samples = state.samples * state.samples;
+        now_.samples = state.samples;
         // what the user did to it, not what the command line or a small screen did
         const WindowSize size = window.points();
         const bool resized = size != size_;

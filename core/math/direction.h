@@ -8,6 +8,8 @@
 
 namespace ivory {
 
+[[nodiscard]] inline double length_of(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
+
 // v / |v| for a finite v that is not 0. The scaling by a power of two changes nothing but the
 // range: where the plain formula neither over- nor underflows, it gives the same doubles.
 [[nodiscard]] inline Vec3d unit(const Vec3d& v) {

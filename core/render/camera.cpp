@@ -14,17 +14,8 @@ namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
-
 bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// What an origin on an orthographic camera's plane is off by: its three roundings a component, and the
-// plane's own axes.
-double origin_error(const View& view, double reach) {
-    const Vec3d& o = view.origin;
-    return 0x1p-48 * (std::abs(o.x) + std::abs(o.y) + std::abs(o.z) + reach);
 }
 
 }  // namespace
@@ -37,14 +28,26 @@ Vec3d origin_on_plane(const View& view, double u, double v) {
     return view.origin + u * view.right + v * view.top;
 }
 
+// Its three roundings a component, and the plane's own axes.
+double origin_error(const View& view, double reach) {
+    const Vec3d& o = view.origin;
+    return 0x1p-48 * (std::abs(o.x) + std::abs(o.y) + std::abs(o.z) + reach);
+}
+
 double height_of(const Camera& camera) {
     if (camera.height) return *camera.height;
-    return 2 * length(camera.target - camera.position) *
+    return 2 * length_of(camera.target - camera.position) *
            std::tan(camera.fov / 2 * radians_per_degree);
 }
 
+Camera with_height(const Camera& camera) {
+    Camera written = camera;
+    if (camera.is_orthographic()) written.height = height_of(camera);
+    return written;
+}
+
 double usual_eye_distance(const Camera& camera) {
-    return length(camera.target - camera.position) / 30;
+    return length_of(camera.target - camera.position) / 30;
 }
 
 View eye_of(const View& view, Eye eye, double apart) {
@@ -54,7 +57,7 @@ View eye_of(const View& view, Eye eye, double apart) {
     View of_eye = view;
     const double to_right = eye == Eye::right ? apart / 2 : -apart / 2;
     of_eye.origin = view.camera.position + to_right * view.right;
-    of_eye.shift = -to_right / length(view.camera.target - view.camera.position);
+    of_eye.shift = -to_right / length_of(view.camera.target - view.camera.position);
     if (!(apart > 0) || !finite(of_eye.origin) || !std::isfinite(of_eye.shift) ||
         of_eye.origin == view.camera.position) {
         throw Error("camera: its eyes are lost to rounding; move them farther apart");
@@ -127,14 +130,14 @@ Cone cone_around(const View& view, int width, int height, const PixelRect& rect)
     cone.apex = view.origin;
     cone.axis = through_window(view, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
     cone.sine = 0;
-    const double axis_length = length(cone.axis);
+    const double axis_length = length_of(cone.axis);
     for (const double corner_u : u) {
         for (const double corner_v : v) {
             const Vec3d corner = through_window(view, corner_u, corner_v);
             // 1e-6 of the product of the lengths is more than rounding could feign.
-            const double lengths = axis_length * length(corner);
+            const double lengths = axis_length * length_of(corner);
             const bool acute = dot(cone.axis, corner) > 1e-6 * lengths;
-            const double sine = length(cross(cone.axis, corner)) / lengths;
+            const double sine = length_of(cross(cone.axis, corner)) / lengths;
             cone.sine = std::max(cone.sine, acute ? sine + margin : every_direction);
         }
     }
@@ -151,7 +154,7 @@ Bundle orthographic_bundle(const View& view, double u0, double u1, double v0, do
     for (const double corner_u : {u0, u1}) {
         for (const double corner_v : {v0, v1}) {
             const Vec3d off = (corner_u - u) * view.right + (corner_v - v) * view.top;
-            bundle.radius = std::max(bundle.radius, length(off));
+            bundle.radius = std::max(bundle.radius, length_of(off));
         }
     }
     const double error = origin_error(

@@ -27,9 +27,7 @@ struct View {
     // Of an eye: how far to the right of its line of sight, at distance 1, the middle of the picture stands.
     double shift = 0;
 
-    [[nodiscard]] bool is_orthographic() const {
-        return camera.projection == Camera::Projection::orthographic;
-    }
+    [[nodiscard]] bool is_orthographic() const { return camera.is_orthographic(); }
 };
 
 // Throws Error where the camera has a fault (core/scene/scene_fault.h) or its frame is lost to
@@ -39,6 +37,8 @@ struct View {
 // The height of an orthographic picture: as the camera says or, where it does not, what fov sees at the
 // target.
 [[nodiscard]] double height_of(const Camera& camera);
+// The same camera, an orthographic one with that height written out.
+[[nodiscard]] Camera with_height(const Camera& camera);
 
 enum class Eye : std::uint8_t { left, right };
 
@@ -72,6 +72,8 @@ enum class Eye : std::uint8_t { left, right };
 // The vector before it is normalised; and where an orthographic camera's ray begins.
 [[nodiscard]] Vec3d through_window(const View& view, double u, double v);
 [[nodiscard]] Vec3d origin_on_plane(const View& view, double u, double v);
+// What the latter is off by where |u| + |v| <= reach.
+[[nodiscard]] double origin_error(const View& view, double reach);
 
 // A cone that holds the primary rays, as the doubles they are, of all pixels of a rectangle that is
 // not empty. Proof: camera.cpp.

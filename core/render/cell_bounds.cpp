@@ -5,6 +5,7 @@
 
 #include "core/field/support.h"
 #include "core/field/surface.h"
+#include "core/math/direction.h"
 
 namespace ivory {
 namespace {
@@ -16,8 +17,6 @@ constexpr double most_of_half = 2;
 
 // So many clusters that follow each other are a block: large cells look at blocks.
 constexpr std::size_t block_size = 16;
-
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
 
 }  // namespace
 
@@ -71,7 +70,7 @@ CellBounds::CellBounds(const Field& field) : field_(field) {
 
     Box3 all = field_.skeletons;
     all.include(box);
-    lost_ = 16 * slack * (length(all.hi - middle_) + length(all.lo - middle_));
+    lost_ = 16 * slack * (length_of(all.hi - middle_) + length_of(all.lo - middle_));
 
     if (!field_.clusters.empty()) make_blocks();
     for (const double b : field_.strength) {
@@ -134,7 +133,7 @@ void CellBounds::make_blocks() {
             for (std::uint32_t n = first; n < block.end; ++n) {
                 const Ball ball = cluster(n);
                 block.radius =
-                    std::max(block.radius, length(ball.center - block.center) + ball.radius);
+                    std::max(block.radius, length_of(ball.center - block.center) + ball.radius);
                 block.above += ball.above;
                 block.below += ball.below;
                 block.inverse_square = std::min(block.inverse_square, ball.inverse_square);

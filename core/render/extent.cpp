@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/kernel/kernels.h"
+#include "core/math/direction.h"
 #include "core/render/cell_bounds.h"
 
 namespace ivory {
@@ -35,8 +36,6 @@ constexpr std::size_t most_evaluations_each = 64;  // and so many more for each 
 constexpr int halvings = 8;
 constexpr int halvings_of_few = 40;
 constexpr std::size_t few = 16;
-
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
 
 // How far a box reaches along n.
 double support(const Box3& box, const Vec3d& n) {
@@ -126,7 +125,7 @@ class Search {
             std::uint32_t element;
         };
         const Vec3d& normal = frustum_.normal[side];
-        const double normal_length = length(normal), per_length = (1 - slack) / normal_length;
+        const double normal_length = length_of(normal), per_length = (1 - slack) / normal_length;
         const double least =
             CellBounds::share_left_out * field_.threshold / static_cast<double>(field_.size());
         const CellBounds::Far far = bounds_.far_beyond(least);
@@ -342,7 +341,7 @@ Extent extent_of(const Box3& box, const Frustum& frustum) {
         around.lo[k] = sub_down(box.lo[k], extent.middle[k]);
         around.hi[k] = sub_up(box.hi[k], extent.middle[k]);
     }
-    extent.radius = std::max(length(around.lo), length(around.hi)) * (1 + slack);
+    extent.radius = std::max(length_of(around.lo), length_of(around.hi)) * (1 + slack);
     for (std::size_t side = 0; side < sides; ++side) {
         extent.reach[side] = support(around, frustum.normal[side]) + 64 * slack * extent.radius;
     }

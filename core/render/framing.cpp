@@ -19,8 +19,6 @@ constexpr double slack = framing_slack;
 // Aimed at; what is left to `framed_share` is for the rounding of the picture's rays.
 constexpr double aimed_share = 0.958;
 
-double length(const Vec3d& v) { return std::hypot(v.x, v.y, v.z); }
-
 bool finite(const Vec3d& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -53,9 +51,9 @@ bool is_framed(const Extent& extent, const Frustum& wanted, const Camera& camera
         const double half = side < to_top ? frustum.half_width : frustum.half_height;
         const double limit = frustum.is_parallel && side < to_far ? half * half_height : 0;
         const Vec3d &m = frustum.normal[side], &n = wanted.normal[side];
-        const double rounding = 64 * slack * (length(away) + extent.radius) * length(m);
+        const double rounding = 64 * slack * (length_of(away) + extent.radius) * length_of(m);
         const double beyond =
-            extent.reach[side] + length(m - n) * extent.radius - dot(m, away) + rounding;
+            extent.reach[side] + length_of(m - n) * extent.radius - dot(m, away) + rounding;
         if (!(beyond < limit)) return false;
     }
     return true;

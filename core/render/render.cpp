@@ -32,7 +32,7 @@ class FrameJob::Work {
           canvas_(canvas),
           settings_(std::move(settings)),
           lists_(picture_, canvas, stop_,
-                 settings_.task == Task::sample ? settings_.sampled->samples : 1) {
+                 settings_.task == Task::sample ? settings_.sampled->samples_a_side : 1) {
         plan();
     }
 

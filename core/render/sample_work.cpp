@@ -47,15 +47,13 @@ SampleWorker::SampleWorker(const Picture& picture, Canvas& canvas, SampledPictur
 // From a pixel's middle to its farthest sample, in the plane that the rays pass at distance 1; longer
 // vectors turn by less.
 Footprint SampleWorker::footprint() const {
-    const double n = sampled_.samples;
+    const double n = sampled_.samples_a_side;
     const double pixel = 2 * picture_.view.s / canvas_.frame.height;
     const double reach =
         0.5 * pixel * (n - 1) / n * std::sqrt(2.0) * (1 + 0x1p-20) + 0x1p-45 * (1 + pixel);
     if (picture_.view.is_orthographic()) {
-        const Vec3d& o = picture_.view.origin;
-        return {.spread = 0,
-                .radius = reach + 0x1p-48 * (std::abs(o.x) + std::abs(o.y) + std::abs(o.z) +
-                                             picture_.view.s * canvas_.frame.width)};
+        const double farthest = picture_.view.s * canvas_.frame.width;
+        return {.spread = 0, .radius = reach + origin_error(picture_.view, farthest)};
     }
     return {.spread = reach, .radius = 0};
 }
@@ -107,7 +105,7 @@ void SampleWorker::certify(const PixelRect& rect, const ElementList& list) {
     rays_.gather(
         picture_.view, canvas_.frame.width, canvas_.frame.height, rect,
         list.most_elements() >= Descent::parts_elements, [](int, int) { return true; },
-        sampled_.samples);
+        sampled_.samples_a_side);
     take_certain(list);
     for (std::size_t k = 0; k < rays_.size(); ++k) {
         const int i = rays_.place[k] % rect.width(), j = rays_.place[k] / rect.width();
@@ -115,7 +113,7 @@ void SampleWorker::certify(const PixelRect& rect, const ElementList& list) {
     }
     if (!any_hit) return;
     rays_.gather_ring(picture_.view, canvas_.frame.width, canvas_.frame.height, rect,
-                      sampled_.samples);
+                      sampled_.samples_a_side);
     take_certain(list);
     for (std::size_t k = 0; k < rays_.size(); ++k) take(rays_.place[k], k);
 }
@@ -123,7 +121,7 @@ void SampleWorker::certify(const PixelRect& rect, const ElementList& list) {
 // Which pixels are settled, and their means.
 void SampleWorker::judge(const PixelRect& rect) {
     const std::ptrdiff_t row = rect.width() + 2;
-    const double n = sampled_.samples;
+    const double n = sampled_.samples_a_side;
     const double share = (n * n - 1) / (24 * n * n);
     for (int j = 0; j < rect.height(); ++j) {
         for (int i = 0; i < rect.width(); ++i) {
@@ -189,7 +187,7 @@ bool SampleWorker::trace_rest(const PixelRect& rect, const ElementList& list) {
         static_cast<std::ptrdiff_t>(size)) {
         return true;
     }
-    const PixelRect all = times(rect, sampled_.samples);
+    const PixelRect all = times(rect, sampled_.samples_a_side);
     for (int y = all.y0; y < all.y1; y += tile_side) {
         for (int x = all.x0; x < all.x1; x += tile_side) {
             const PixelRect part{x, y, std::min(x + tile_side, all.x1),
@@ -203,7 +201,7 @@ bool SampleWorker::trace_rest(const PixelRect& rect, const ElementList& list) {
 // The samples of a tile of the larger picture, but those of settled pixels.
 bool SampleWorker::trace_part(const PixelRect& rect, const PixelRect& part,
                               const ElementList& list) {
-    const int n = sampled_.samples;
+    const int n = sampled_.samples_a_side;
     const auto place_of = [&](int i, int j) {
         return static_cast<std::size_t>((j / n - rect.y0) * rect.width() + i / n - rect.x0);
     };
@@ -242,7 +240,7 @@ bool SampleWorker::trace_part(const PixelRect& rect, const PixelRect& part,
 
 void SampleWorker::write(std::size_t tile, const PixelRect& rect) {
     const SrgbTable& table = srgb_table();
-    const double each = 1.0 / (sampled_.samples * sampled_.samples);
+    const double each = 1.0 / (sampled_.samples_a_side * sampled_.samples_a_side);
     std::array<std::uint16_t, 5>& count = sampled_.pixels[tile];
     count = {};
     for (int j = rect.y0; j < rect.y1; ++j) {

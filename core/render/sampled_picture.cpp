@@ -78,18 +78,19 @@ class LightOfRows {
 
 Status named_after(Status one, Status other) { return rank(other) > rank(one) ? other : one; }
 
-SampledPicture::SampledPicture(const Canvas& canvas, int of_samples, bool keep_depth)
-    : samples(of_samples),
+SampledPicture::SampledPicture(const Canvas& canvas, int n, bool keep_depth)
+    : samples_a_side(n),
       color(canvas.frame.size()),
       depth(keep_depth ? canvas.frame.size() : 0),
       pixels(canvas.grid.tiles.size()) {}
 
-SampledPicture mean_of(const Picture& picture, const Canvas& larger, int samples) {
+SampledPicture mean_of(const Picture& picture, const Canvas& larger, int samples_a_side) {
+    const int n = samples_a_side;
     const Frame& frame = larger.frame;
-    const Canvas size(frame.width / samples, frame.height / samples, false);
-    SampledPicture mean(size, samples, true);
+    const Canvas size(frame.width / n, frame.height / n, false);
+    SampledPicture mean(size, n, true);
     const SrgbTable& table = srgb_table();
-    const double each = 1.0 / (samples * samples);
+    const double each = 1.0 / (n * n);
     LightOfRows lights(picture, frame);
     std::vector<Color> sums;
     std::vector<Status> status;
@@ -97,13 +98,13 @@ SampledPicture mean_of(const Picture& picture, const Canvas& larger, int samples
         sums.assign(static_cast<std::size_t>(size.frame.width), Color{});
         status.assign(sums.size(), Status::claimed_miss);
         std::fill_n(&mean.depth[size.frame.at(0, j)], sums.size(), infinity<double>);
-        for (int row = j * samples; row < (j + 1) * samples; ++row) {
+        for (int row = j * n; row < (j + 1) * n; ++row) {
             lights.for_row(row, [&](int i, const Color& light) {
-                const auto column = static_cast<std::size_t>(i / samples);
+                const auto column = static_cast<std::size_t>(i / n);
                 sums[column] = sums[column] + light;
                 const std::size_t pixel = frame.at(i, row);
                 status[column] = named_after(status[column], frame.status[pixel]);
-                double& depth = mean.depth[size.frame.at(i / samples, j)];
+                double& depth = mean.depth[size.frame.at(i / n, j)];
                 if (possibly_hit(frame.status[pixel]))
                     depth = std::min(depth, midpoint(frame.t(pixel)));
             });

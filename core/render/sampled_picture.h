@@ -15,7 +15,7 @@ inline constexpr int most_samples_a_side = 8;
 
 // What Task::sample paints on.
 struct SampledPicture {
-    int samples;          // n, 2 or more
+    int samples_a_side;   // n, 2 or more
     Plane<Rgba8> color;   // as a frame's
     Plane<double> depth;  // the least t of a pixel's samples, infinity: none; empty unless kept
     // By tile: how many of its pixels have each Status. A pixel is named after the sample that comes
@@ -23,13 +23,14 @@ struct SampledPicture {
     std::vector<std::array<std::uint16_t, 5>> pixels;
 
     // For a canvas of the picture's size. `keep_depth`: all samples are traced. Throws std::bad_alloc.
-    SampledPicture(const Canvas& canvas, int of_samples, bool keep_depth);
+    SampledPicture(const Canvas& canvas, int n, bool keep_depth);
 };
 
 // Of a pixel of which some samples are known to be one and another has been found to be the other.
 [[nodiscard]] Status named_after(Status one, Status other);
 
 // From all pixels of the larger picture, on a canvas that keeps its surface; with the depth.
-[[nodiscard]] SampledPicture mean_of(const Picture& picture, const Canvas& larger, int samples);
+[[nodiscard]] SampledPicture mean_of(const Picture& picture, const Canvas& larger,
+                                     int samples_a_side);
 
 }  // namespace ivory

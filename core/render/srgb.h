@@ -1,4 +1,4 @@
-// From linear light to the bytes of sRGB (IEC 61966-2-1), by comparison: no power is computed.
+// Between linear light and sRGB (IEC 61966-2-1): to bytes by comparison, no power is computed.
 #pragma once
 
 #include <algorithm>
@@ -38,5 +38,9 @@ struct SrgbTable {
 
 // Linear RGB, clamped to 0..1, as bytes of sRGB: 255 times the curve, to nearest.
 [[nodiscard]] Rgba8 to_srgb(const Color& linear);
+
+// The light of a value of sRGB, 0..1 both; and of each byte.
+[[nodiscard]] double linear_of_srgb(double value);
+[[nodiscard]] const std::array<double, 256>& linear_of_bytes();
 
 }  // namespace ivory

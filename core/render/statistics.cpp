@@ -6,13 +6,12 @@
 
 #include "core/math/instruction_sets.h"
 #include "core/render/answers_file.h"
+#include "core/scene/scene_json.h"
 
 namespace ivory {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json array_of(const Vec3d& v) { return Json::array({v.x, v.y, v.z}); }
 
 }  // namespace
 
@@ -68,15 +67,7 @@ std::string statistics_json(const RenderStatistics& s) {
     json["method"] = s.method;
     json["tolerance"] = s.options.tolerance;
     json["samples"] = s.samples;
-    json["camera"] = {{"position", array_of(s.camera.position)},
-                      {"target", array_of(s.camera.target)},
-                      {"up", array_of(s.camera.up)},
-                      {"fov", s.camera.fov}};
-    if (s.camera.projection == Camera::Projection::orthographic) {
-        json["camera"]["projection"] =
-            projection_words[static_cast<std::size_t>(s.camera.projection)];
-        json["camera"]["height"] = height_of(s.camera);
-    }
+    json["camera"] = Json::parse(write_camera(with_height(s.camera)));
     json["repeats"] = s.repeats;
     json["seconds"] = {{"load", s.seconds.load},   {"compile", s.seconds.compile},
                        {"trace", s.seconds.trace}, {"shade", s.seconds.shade},

@@ -1,25 +1,11 @@
 #include "core/render/stereo.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "core/render/srgb.h"
 
 namespace ivory {
-namespace {
-
-// Of each byte of sRGB (IEC 61966-2-1).
-std::array<double, 256> linear_of_bytes() {
-    std::array<double, 256> linear{};
-    for (std::size_t byte = 0; byte < linear.size(); ++byte) {
-        const double value = static_cast<double>(byte) / 255;
-        linear[byte] = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-    }
-    return linear;
-}
-
-}  // namespace
 
 std::vector<Rgba8> side_by_side(const Rgba8* left, const Rgba8* right, int width, int height) {
     const auto across = static_cast<std::size_t>(width), down = static_cast<std::size_t>(height);
@@ -32,7 +18,7 @@ std::vector<Rgba8> side_by_side(const Rgba8* left, const Rgba8* right, int width
 }
 
 std::vector<Rgba8> red_cyan(const Rgba8* left, const Rgba8* right, int width, int height) {
-    static const std::array<double, 256> linear = linear_of_bytes();
+    const std::array<double, 256>& linear = linear_of_bytes();
     const SrgbTable& table = srgb_table();
     const auto grey = [&](const Rgba8& color) {
         return table.byte(static_cast<float>(0.2126 * linear[color.r] + 0.7152 * linear[color.g] +

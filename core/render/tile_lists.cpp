@@ -19,12 +19,11 @@ bool wait_until(const std::atomic<bool>& done, const std::atomic<bool>& stop) {
 
 }  // namespace
 
-TileLists::TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
-                     int samples)
+TileLists::TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop, int n)
     : picture_(picture),
       canvas_(canvas),
       stop_(stop),
-      samples_(samples),
+      n_(n),
       all_(all_elements(*picture.field)),
       all_clusters_(picture.options.skipping.lists ? all_clusters(*picture.field) : all_),
       region_lists_(canvas.grid.regions.size()),
@@ -48,7 +47,7 @@ ElementList TileLists::narrowed(const ElementList& parent, const PixelRect& rect
     const Frame& frame = canvas_.frame;
     ElementList list = reaching_clusters(
         *picture_.field, parent,
-        cone_around(picture_.view, frame.width * samples_, frame.height * samples_, seen(rect)));
+        cone_around(picture_.view, frame.width * n_, frame.height * n_, seen(rect)));
     counts.skipping.list_elements += parent.size();
     counts.skipping.list_left_out += parent.size() - list.size();
     return list;
@@ -78,11 +77,11 @@ ElementList TileLists::of_tile(std::size_t tile, Counts& counts) const {
 
 CommonBundle TileLists::common(std::size_t block) const {
     static std::atomic<std::uint64_t> numbers{0};
-    return {.bundle = bundle_around(picture_.view, canvas_.frame.width * samples_,
-                                    canvas_.frame.height * samples_,
-                                    seen(canvas_.grid.blocks.rect(block))),
-            .list = &*block_lists_[block],
-            .number = numbers.fetch_add(1, std::memory_order_relaxed) + 1};
+    return {
+        .bundle = bundle_around(picture_.view, canvas_.frame.width * n_, canvas_.frame.height * n_,
+                                seen(canvas_.grid.blocks.rect(block))),
+        .list = &*block_lists_[block],
+        .number = numbers.fetch_add(1, std::memory_order_relaxed) + 1};
 }
 
 }  // namespace ivory

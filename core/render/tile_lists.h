@@ -14,10 +14,9 @@ namespace ivory {
 
 class TileLists {
   public:
-    // Of several samples: valid on all rays of a picture of `samples` times as many columns and rows, and
-    // of the pixels around each part.
-    TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop,
-              int samples = 1);
+    // Of n samples a side of a pixel: valid on all rays of a picture of n times as many columns and rows,
+    // and of the pixels around each part.
+    TileLists(const Picture& picture, Canvas& canvas, const std::atomic<bool>& stop, int n = 1);
 
     // All elements, which every list stands for.
     [[nodiscard]] const ElementList& all() const { return all_; }
@@ -45,7 +44,7 @@ class TileLists {
   private:
     // A part as the lists see it, in pixels of that picture.
     [[nodiscard]] PixelRect seen(const PixelRect& rect) const {
-        return samples_ == 1 ? rect : times(widened(rect, 1), samples_);
+        return n_ == 1 ? rect : times(widened(rect, 1), n_);
     }
     [[nodiscard]] ElementList narrowed(const ElementList& parent, const PixelRect& rect,
                                        Counts& counts) const;
@@ -53,7 +52,7 @@ class TileLists {
     const Picture& picture_;
     Canvas& canvas_;
     const std::atomic<bool>& stop_;
-    const int samples_;
+    const int n_;
     const ElementList all_, all_clusters_;
     std::vector<ElementList> region_lists_;
     std::vector<std::atomic<bool>> region_done_;

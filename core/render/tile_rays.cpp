@@ -6,26 +6,25 @@ namespace ivory {
 Bundle TileRays::bundle(std::size_t number, const PixelRect& part_of_tile) const {
     return in_parts_ && is_whole_
                ? bundles_[number]
-               : bundle_around(*view_, all_width_, all_height_, times(part_of_tile, samples_));
+               : bundle_around(*view_, all_width_, all_height_, times(part_of_tile, n_));
 }
 
-void TileRays::look_through(const View& view, int width, int height, int samples) {
+void TileRays::look_through(const View& view, int width, int height, int n) {
     view_ = &view;
-    samples_ = samples;
-    all_width_ = width * samples;
-    all_height_ = height * samples;
+    n_ = n;
+    all_width_ = width * n;
+    all_height_ = height * n;
     rays.count = rays.part_count = 0;
 }
 
 void TileRays::begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
-                     int samples) {
-    look_through(view, width, height, samples);
+                     int n) {
+    look_through(view, width, height, n);
     in_parts_ = in_parts;
     is_whole_ = rect.width() == tile_side && rect.height() == tile_side;
     plane_.emplace(view, width, height, rect);
     if (in_parts && is_whole_) {
-        bundles_ = tile_bundles(view, all_width_, all_height_, rect.x0 * samples, rect.y0 * samples,
-                                samples);
+        bundles_ = tile_bundles(view, all_width_, all_height_, rect.x0 * n, rect.y0 * n, n);
     }
     rays.bundle = bundle(0, rect);
     if (!in_parts) return;
@@ -58,9 +57,8 @@ void TileRays::end(const View& view) {
     }
 }
 
-void TileRays::gather_ring(const View& view, int width, int height, const PixelRect& rect,
-                           int samples) {
-    look_through(view, width, height, samples);
+void TileRays::gather_ring(const View& view, int width, int height, const PixelRect& rect, int n) {
+    look_through(view, width, height, n);
     is_whole_ = false;
     in_parts_ = true;
     const PixelRect all = widened(rect, 1);

@@ -41,11 +41,11 @@ struct TileRays {
 
     // Those of the pixels (i, j) of `rect`, a tile of a picture of that size, that are wanted. In parts:
     // with bundles for groups of them, as core/trace/descent.h wants them; which hold all rays of a
-    // picture of `samples` times as many columns and rows.
+    // picture of n times as many columns and rows.
     template <class Wanted>
     void gather(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
-                const Wanted& wanted, int samples = 1) {
-        begin(view, width, height, rect, in_parts, samples);
+                const Wanted& wanted, int n = 1) {
+        begin(view, width, height, rect, in_parts, n);
         for_squares(rect, [&](const PixelRect& square) {
             for (int j = square.y0; j < square.y1; ++j)
                 for (int i = square.x0; i < square.x1; ++i)
@@ -55,7 +55,7 @@ struct TileRays {
     }
     // Those of the pixels around `rect`, in pieces of four side by side; the picture's edge is none to them.
     // `place`: of an array of two more columns and rows than the tile has.
-    void gather_ring(const View& view, int width, int height, const PixelRect& rect, int samples);
+    void gather_ring(const View& view, int width, int height, const PixelRect& rect, int n);
 
     // Calls visit.operator()<count>(k, p) for runs of rays, from k on, whose pixels stand side by
     // side in a row of the frame, from p on.
@@ -74,9 +74,9 @@ struct TileRays {
     }
 
   private:
-    void look_through(const View& view, int width, int height, int samples);
+    void look_through(const View& view, int width, int height, int n);
     void begin(const View& view, int width, int height, const PixelRect& rect, bool in_parts,
-               int samples);
+               int n);
     // Calls visit(square) for the squares of 4 x 4 pixels, quarter by quarter of the tile; what it adds
     // belongs to the square's part.
     template <class Visit>
@@ -120,7 +120,7 @@ struct TileRays {
     std::optional<TilePlane> plane_;
     TileBundles bundles_;
     const View* view_ = nullptr;
-    int all_width_ = 0, all_height_ = 0, samples_ = 1;
+    int all_width_ = 0, all_height_ = 0, n_ = 1;
     bool in_parts_ = false, is_whole_ = false;
     alignas(64) std::array<double, pixels_in_tile> u_, v_;
 };

@@ -50,6 +50,7 @@ struct Camera {
     // Of an orthographic picture, in scene units, > 0; without: what fov sees at the target. The
     // other projection keeps it, but does not use it.
     std::optional<double> height{};
+    [[nodiscard]] bool is_orthographic() const { return projection == Projection::orthographic; }
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 

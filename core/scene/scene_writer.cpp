@@ -80,7 +80,7 @@ void append_members(Members members, const Camera& camera) {
         .add("target", camera.target)
         .add("up", camera.up)
         .add("fov", camera.fov);
-    if (camera.projection != Camera::Projection::perspective) {
+    if (camera.is_orthographic()) {
         members.add_word("projection",
                          projection_words[static_cast<std::size_t>(camera.projection)]);
     }

@@ -13,7 +13,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // if that is not enough, the rays are better traced one by one.
 constexpr int budget = 1024, budget_of_part = 256, budget_of_rays = 8192;
 
-// The t up to which the places of core/field/bundle.h are close enough for normals and colours:
+// The t up to which the places of core/field/bundle_field.h are close enough for normals and colours:
 // they are off by 2^-98 of it.
 double exact_limit(const Field& field, const Bundle& bundle) {
     const Vec3d& o = bundle.origin;
@@ -53,7 +53,6 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
     }
     const double end = std::min(window.end, limit);
     index_.clear();
-    t_.clear();
     std::size_t found = 0;
     for (std::size_t k = part.first; k < part.end; ++k) {
         if (lanes_.state[k] != Lanes::hit) continue;
@@ -63,13 +62,12 @@ std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& par
             continue;
         }
         index_.push_back(static_cast<std::uint32_t>(k));
-        t_.push_back(lanes_.t[k]);
     }
     if (index_.empty()) return found;
     points_.resize(index_.size());
     const Window& refined = descent_.field().full();
     surfaces.mix(refined.fine.elements());
-    packet_steps().surface(refined, field, lanes_, index_, t_.data(), points_.data(), stop);
+    packet_steps().surface(refined, field, lanes_, index_, points_.data(), stop);
     if (stop.requested()) return 0;
     for (std::size_t i = 0; i < index_.size(); ++i) {
         const std::size_t k = index_[i];

@@ -33,8 +33,8 @@ class PacketTracer {
     };
 
     // hit and miss are proved; unresolved says that the ray has to be traced by other means: f < 0
-    // on [0, t.lo), and where t.hi is finite the first root lies before it. After a stop all are. `list` has to be valid
-    // on the bundle. Unless `surfaces` is null it gets what `surface` would give for the hits'
+    // on [0, t.lo), and where t.hi is finite the first root lies before it. After a stop all are. `list` has
+    // to be valid on the bundle. Unless `surfaces` is null it gets what `surface` would give for the hits'
     // midpoints; returns of how many it has found it.
     std::size_t isolate(const Field& field, const ElementList& list, const RayBundle& rays,
                         const Settings& settings, BundleIsolations& isolations,
@@ -87,8 +87,7 @@ class PacketTracer {
     Lanes lanes_;
     EnteringRays entering_;
     std::vector<BundlePart> parts_;
-    std::vector<std::uint32_t> index_;  // of hits in a window, their t and what is found there
-    std::vector<double> t_;
+    std::vector<std::uint32_t> index_;  // of hits in a window, and what is found there
     std::vector<SurfacePoint> points_;
 };
 

@@ -110,10 +110,10 @@ struct PacketSteps {
                          const Lanes& lanes, std::size_t first, std::size_t end,
                          BundleSurfaces& surfaces, Cancellation& stop);
 
-    // Normal and colour at t[k] of lane index[k], which lies in the window. Where the gradient is 0
-    // or not defined, or no F_i is above 0, the normal's x is NaN.
+    // surface[k]: normal and colour at t of lane index[k], which lies in the window. Where the gradient
+    // is 0 or not defined, or no F_i is above 0, the normal's x is NaN.
     void (*surface)(const Window& window, const Field& field, const Lanes& lanes,
-                    std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface,
+                    std::span<const std::uint32_t> index, SurfacePoint* surface,
                     Cancellation& stop);
 
     // Those that still walk are misses, the others hits or unresolved.

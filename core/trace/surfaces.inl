@@ -135,8 +135,7 @@ HWY_INLINE void add_surface(D d, const BundleEntry<double>* entry, const std::ui
 }
 
 void surface(const Window& window, const Field& field, const Lanes& lanes,
-             std::span<const std::uint32_t> index, const double* t, SurfacePoint* surface,
-             Cancellation& stop) {
+             std::span<const std::uint32_t> index, SurfacePoint* surface, Cancellation& stop) {
     const D d;
     const std::size_t N = hn::Lanes(d);
     for (std::size_t first = 0; first < index.size(); first += N) {
@@ -144,9 +143,9 @@ void surface(const Window& window, const Field& field, const Lanes& lanes,
         Batch batch;
         alignas(64) double at[widest];
         for (std::size_t k = 0; k < N; ++k) {
-            const std::size_t item = std::min(first + k, index.size() - 1);
-            batch.add(index[item], lanes);
-            at[k] = t[item];
+            const std::uint32_t lane = index[std::min(first + k, index.size() - 1)];
+            batch.add(lane, lanes);
+            at[k] = lanes.t[lane];
         }
         const V<D> m = hn::Load(d, at);
         const Vec3v<D> p = place(window, rays_of(window, batch.rays(0)), m);

@@ -100,7 +100,7 @@ class Session : public testing::Test {
     // How long a first picture may take: by default so long that it is one of every pixel.
     std::chrono::milliseconds budget{60'000};
 
-    int samples = 1;  // a side
+    int samples = 1;  // a pixel
 
     void show(const SceneValue& scene, const Camera& c = camera(), WindowSize picture_size = size) {
         const Clock::time_point now = Clock::now();
@@ -343,7 +343,7 @@ TEST_F(Session, CoarsePicturesOfEditsThatOvertakeEachOtherEndAsRender) {
 // What an edit does not touch keeps its bytes all the while, though the hierarchy is made anew and every
 // pixel's samples are looked for again.
 TEST_F(Session, SampledTilesKeepTheirBytesThroughAnEdit) {
-    samples = 4;
+    samples = 16;
     show(with_left_blob_at(-1.2));
     ASSERT_TRUE(wait_final());
     const std::vector<Rgba8> before = session.shown().color;
@@ -375,7 +375,7 @@ TEST_F(Session, AnotherNumberOfSamplesTracesNothingAnewAndComesBack) {
     ASSERT_TRUE(wait_final());
     const std::vector<Rgba8> sharp = session.shown().color;
     const std::uint64_t traced = session.totals().tiles_traced;
-    samples = 2;
+    samples = 4;
     show(scene);
     ASSERT_TRUE(wait_final());
     EXPECT_NE(session.shown().color, sharp);
@@ -388,7 +388,7 @@ TEST_F(Session, AnotherNumberOfSamplesTracesNothingAnewAndComesBack) {
 
 // An edit that comes while samples are being taken leaves nothing of the old picture.
 TEST_F(Session, AnEditWhileSamplesComeEndsAsItWould) {
-    samples = 4;
+    samples = 16;
     for (int round = 0; round < 4; ++round) {
         show(with_left_blob_at(-1.2 + 0.1 * round));
         ASSERT_TRUE(wait_first());
@@ -403,7 +403,7 @@ TEST_F(Session, AnEditWhileSamplesComeEndsAsItWould) {
     samples = 1;
     show(with_left_blob_at(-0.9));
     ASSERT_TRUE(wait_final());
-    samples = 4;
+    samples = 16;
     show(with_left_blob_at(-0.9));
     ASSERT_TRUE(wait_final());
     EXPECT_TRUE(session.shown().color == after);
