@@ -77,7 +77,7 @@ void draw_size(ViewerState& state) {
     label(state, "Height");
     const double height = seen_height(camera), step = step_for(height);
     number_field(state,
-                 {.id = "camera.height", .value = height, .step = step, .least = step},
+                 {.id = "camera.height", .value = height, .step = step, .least = step, .digits = 6},
                  field_width(), [](Camera& changed, double given) { changed.height = given; });
     ImGui::EndDisabled();
     if (!parallel) tooltip("What is seen from top to bottom at the target.");

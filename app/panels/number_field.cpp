@@ -28,14 +28,21 @@ constexpr double fine = 0.1;      // of the way, with Shift
 
 bool item_is_disabled() { return (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0; }
 
-// The shortest decimal that is exactly `value`, or as many of its digits as fit.
-std::string fitted_number(double value, float width) {
-    std::string text = number_text(value);
-    for (int digits = 9; digits >= 2 && ImGui::CalcTextSize(text.c_str()).x > width; --digits) {
-        std::array<char, 40> buffer{};
-        std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
-        text = buffer.data();
+std::string rounded_number(double value, int digits) {
+    std::array<char, 40> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
+    return buffer.data();
+}
+
+// The shortest decimal that is exactly the value, or as many of its digits as are to be shown and fit.
+std::string fitted_number(const NumberField& field, float width) {
+    std::string text = number_text(field.value);
+    if (field.digits) {
+        const std::string few = rounded_number(field.value, *field.digits);
+        if (few.size() < text.size()) text = few;
     }
+    for (int digits = 9; digits >= 2 && ImGui::CalcTextSize(text.c_str()).x > width; --digits)
+        text = rounded_number(field.value, digits);
     return text;
 }
 
@@ -143,7 +150,7 @@ void draw_number(const ViewerState& state, const NumberField& field, float width
         list.AddRectFilled(lo, {lo.x + px(state, 3), hi.y}, packed(mark, alpha), rounding,
                            ImDrawFlags_RoundCornersLeft);
     }
-    const std::string text = fitted_number(field.value, width - px(state, field.axis ? 17 : 14));
+    const std::string text = fitted_number(field, width - px(state, field.axis ? 17 : 14));
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const float left = field.axis ? px(state, 3) : 0;
     const float x = std::floor(lo.x + left + 0.5f * (hi.x - lo.x - left - extent.x));

@@ -28,6 +28,8 @@ struct NumberField {
     double least = -std::numeric_limits<double>::infinity();
     double greatest = std::numeric_limits<double>::infinity();
     std::optional<int> axis = std::nullopt;  // marked in its colour
+    // Shown at most, where the value follows from others and has all that a double can have.
+    std::optional<int> digits = std::nullopt;
 };
 
 // The step of places: one pixel of a field's drag is about one pixel of the picture at the target.

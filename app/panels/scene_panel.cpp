@@ -1,8 +1,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +28,14 @@ namespace {
 constexpr double row_height = 28;  // pixels at scale 1
 constexpr const char* dragged_row = "row";
 
+// Of the sign on a button that adds a shape, and of the gap to its name; pixels at scale 1.
+constexpr double sign_side = 11, sign_gap = 5;
+
+float sign_and_name_width(const ViewerState& state, Shape shape) {
+    const std::string label = with_shape(shape, []<class S>() { return std::string(S::label); });
+    return px(state, sign_side + sign_gap) + ImGui::CalcTextSize(label.c_str()).x;
+}
+
 // A button that adds: the shape's sign and its name.
 void add_button(ViewerState& state, Shape shape, float width) {
     const auto [word, label] = with_shape(shape, []<class S>() {
@@ -35,30 +45,35 @@ void add_button(ViewerState& state, Shape shape, float width) {
     const bool clicked = text_button(state, "add." + word, "", width);
     const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
     tooltip(("Add " + std::string(with_article(shape))).c_str());
-    const float side = px(state, 11), gap = px(state, 6), middle = 0.5f * (lo.y + hi.y);
-    const ImVec2 text = ImGui::CalcTextSize(label.c_str());
-    const float x = std::floor(0.5f * (lo.x + hi.x - side - gap - text.x));
+    const float side = px(state, sign_side), gap = px(state, sign_gap);
+    const float middle = 0.5f * (lo.y + hi.y), height = ImGui::GetFontSize();
+    const float x = std::floor(0.5f * (lo.x + hi.x - sign_and_name_width(state, shape)));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_icon(list, shape, {x + 0.5f * side, middle}, side, packed(colors.accent));
-    list.AddText({x + side + gap, std::floor(middle - 0.5f * text.y)}, packed(colors.text),
+    list.AddText({x + side + gap, std::floor(middle - 0.5f * height)}, packed(colors.text),
                  label.c_str());
     if (clicked) add_element(state, shape);
 }
 
-// In rows of three; the middle column takes the longer names, the last one what is left.
+// In rows of three: each column has the room that its longest name needs, and a third of what is left.
 void draw_add_buttons(ViewerState& state) {
     constexpr std::size_t columns = 3;
     const float spacing = px(state, 4);
-    const float width = std::floor((field_width() - 2 * spacing) / columns);
+    std::array<float, columns> widths{};
+    for (std::size_t i = 0; i < shape_count; ++i) {
+        float& width = widths[i % columns];
+        width = std::max(width, sign_and_name_width(state, static_cast<Shape>(i)));
+    }
+    const float needed = std::accumulate(widths.begin(), widths.end(), (columns - 1) * spacing);
+    const float more = (field_width() - needed) / columns;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         {px(state, 4), ImGui::GetStyle().FramePadding.y});
     for (std::size_t i = 0; i < shape_count; ++i) {
         const std::size_t column = i % columns;
         if (column > 0) ImGui::SameLine(0, spacing);
+        const bool is_last = column + 1 == columns;
         add_button(state, static_cast<Shape>(i),
-                   column == 0   ? width - px(state, 8)
-                   : column == 1 ? width + px(state, 16)
-                                 : field_width());
+                   is_last ? field_width() : std::floor(widths[column] + more));
     }
     ImGui::PopStyleVar();
 }
