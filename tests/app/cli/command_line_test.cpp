@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -64,6 +65,27 @@ void wait_until(const std::function<bool()>& happened) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     EXPECT_TRUE(happened());
+}
+
+// RGB, row by row.
+std::vector<std::uint8_t> pixels_of(const fs::path& path) {
+    png_image image;
+    std::memset(&image, 0, sizeof image);
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
+    image.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+    EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+    return pixels;
+}
+
+// Of linear light 0..1, by the formula of IEC 61966-2-1.
+double light_of(std::uint8_t byte) {
+    const double s = byte / 255.0;
+    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+}
+double byte_of(double light) {
+    return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
 }
 
 TEST(CommandLine, HelpAndVersionGoToStandardOutput) {
@@ -128,7 +150,8 @@ TEST(CommandLine, RenderWritesAllThatIsAskedFor) {
     }
 }
 
-// The answers are those of the larger picture, and the picture the same as without them but for a byte.
+// The answers are those of the larger picture, of which the picture has the mean; without the answers it is
+// the same but for a byte.
 TEST(CommandLine, SamplesAreThoseOfTheLargerPicture) {
     const TemporaryFolder folder;
     const std::string out = folder.path().string() + "/";
@@ -141,6 +164,30 @@ TEST(CommandLine, SamplesAreThoseOfTheLargerPicture) {
                          out + "b.csv"})
                   .status,
               0);
+    ASSERT_EQ(
+        run_ivory({"render", figure_1, "-o", out + "c.png", "--size", "40x30", "--samples", "4"})
+            .status,
+        0);
+    const std::vector<std::uint8_t> all = pixels_of(out + "a.png"),
+                                    larger = pixels_of(out + "b.png"),
+                                    few = pixels_of(out + "c.png");
+    ASSERT_EQ(all.size(), 3u * 40 * 30);
+    ASSERT_EQ(larger.size(), 4 * all.size());
+    ASSERT_EQ(few.size(), all.size());
+    int smoothed = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::size_t i = k / 3 % 40, j = k / 120, first = 3 * (2 * j * 80 + 2 * i) + k % 3;
+        const auto [least, most] = std::minmax(
+            {larger[first], larger[first + 3], larger[first + 240], larger[first + 243]});
+        const double mean = (light_of(larger[first]) + light_of(larger[first + 3]) +
+                             light_of(larger[first + 240]) + light_of(larger[first + 243])) /
+                            4;
+        // half a byte of its own, and as much as the four were rounded by
+        EXPECT_NEAR(all[k], byte_of(mean), 1.01) << i << ", " << j;
+        EXPECT_NEAR(few[k], all[k], 1) << i << ", " << j;
+        smoothed += all[k] > least + 2 && all[k] + 2 < most;
+    }
+    EXPECT_GT(smoothed, 100);
     EXPECT_EQ(bytes_of(out + "a.csv"), bytes_of(out + "b.csv"));
     EXPECT_TRUE(bytes_of(out + "a.pfm").starts_with("Pf\n40 30\n"));
     const Json statistics = Json::parse(bytes_of(out + "a.json"));
@@ -158,15 +205,15 @@ TEST(CommandLine, StereoPicturesAreThoseOfBothEyes) {
         words.insert(words.end(), more.begin(), more.end());
         return run_ivory(words);
     };
-    ASSERT_EQ(render({"-o", out + "a.png", "--stereo", "side-by-side", "--eyes", "0.2", "--depth",
+    ASSERT_EQ(render({"-o", out + "a.png", "--stereo", "side-by-side", "--eyes", "0.8", "--depth",
                       out + "a.pfm", "--answers", out + "a.csv"})
                   .status,
               0);
-    ASSERT_EQ(render({"-o", out + "b.png", "--stereo", "red-cyan"}).status, 0);
+    ASSERT_EQ(render({"-o", out + "b.png", "--stereo", "red-cyan", "--eyes", "0.8"}).status, 0);
     EXPECT_TRUE(bytes_of(out + "a.pfm").starts_with("Pf\n80 30\n"));
     const std::vector<std::string> answers = lines_of(bytes_of(out + "a.csv"));
     ASSERT_EQ(answers.size(), 2400u);
-    // The left eye's rays come first, all from one place, a fifth from the right one's.
+    // The left eye's rays come first, all from one place, so far from the right one's.
     const auto origin_of = [&](std::size_t line) {
         Vec3d origin;
         std::istringstream fields(answers[line]);
@@ -180,7 +227,36 @@ TEST(CommandLine, StereoPicturesAreThoseOfBothEyes) {
     EXPECT_EQ(origin_of(0), origin_of(1199));
     EXPECT_EQ(origin_of(1200), origin_of(2399));
     const Vec3d apart = origin_of(1200) - origin_of(0);
-    EXPECT_NEAR(std::sqrt(dot(apart, apart)), 0.2, 1e-14);
+    EXPECT_NEAR(std::sqrt(dot(apart, apart)), 0.8, 1e-14);
+
+    const std::vector<std::uint8_t> both = pixels_of(out + "a.png"),
+                                    grey = pixels_of(out + "b.png");
+    ASSERT_EQ(both.size(), 3u * 80 * 30);
+    ASSERT_EQ(grey.size(), 3u * 40 * 30);
+    const auto pixel = [](const std::vector<std::uint8_t>& pixels, std::size_t p) {
+        return std::array{pixels[3 * p], pixels[3 * p + 1], pixels[3 * p + 2]};
+    };
+    const auto luminance = [](const std::array<std::uint8_t, 3>& rgb) {
+        return byte_of(0.2126 * light_of(rgb[0]) + 0.7152 * light_of(rgb[1]) +
+                       0.0722 * light_of(rgb[2]));
+    };
+    int differing = 0;
+    for (std::size_t j = 0; j < 30; ++j) {
+        for (std::size_t i = 0; i < 40; ++i) {
+            const auto left = pixel(both, 80 * j + i), right = pixel(both, 80 * j + 40 + i);
+            const bool left_misses = answers[40 * j + i].find(",miss,") != std::string::npos;
+            const bool right_misses =
+                answers[1200 + 40 * j + i].find(",miss,") != std::string::npos;
+            EXPECT_EQ(left == pixel(both, 0), left_misses) << i << ", " << j;
+            EXPECT_EQ(right == pixel(both, 0), right_misses) << i << ", " << j;
+            differing += left_misses != right_misses;
+            const auto seen = pixel(grey, 40 * j + i);
+            EXPECT_NEAR(seen[0], luminance(left), 0.51);
+            EXPECT_NEAR(seen[1], luminance(right), 0.51);
+            EXPECT_EQ(seen[1], seen[2]);
+        }
+    }
+    EXPECT_GT(differing, 5);
 }
 
 TEST(CommandLine, AnOrthographicCameraHasNoTwoEyes) {
@@ -234,18 +310,6 @@ TEST(CommandLine, AnyNumberOfThreadsGivesTheSameBytes) {
         if (first_png.empty()) first_png = png, first_csv = csv;
         EXPECT_TRUE(png == first_png && csv == first_csv) << threads;
     }
-}
-
-// RGB, row by row.
-std::vector<std::uint8_t> pixels_of(const fs::path& path) {
-    png_image image;
-    std::memset(&image, 0, sizeof image);
-    image.version = PNG_IMAGE_VERSION;
-    EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
-    image.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
-    EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
-    return pixels;
 }
 
 // On another instruction set a hit is never a miss, enclosures overlap, and pixels of equal status

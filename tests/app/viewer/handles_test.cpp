@@ -9,6 +9,7 @@
 
 #include "app/document/elements.h"
 #include "core/field/field.h"
+#include "tests/app/each_projection.h"
 #include "tests/app/panels/viewer_bench.h"
 
 namespace ivory {
@@ -29,8 +30,7 @@ Scene figure() {
     return scene;
 }
 
-// In both projections.
-class InEachProjection : public testing::TestWithParam<Camera::Projection> {
+class InEachProjection : public tests::InEachProjection {
   protected:
     static Scene figure() {
         Scene scene = ivory::figure();
@@ -38,13 +38,7 @@ class InEachProjection : public testing::TestWithParam<Camera::Projection> {
         return scene;
     }
 };
-INSTANTIATE_TEST_SUITE_P(, InEachProjection,
-                         testing::Values(Camera::Projection::perspective,
-                                         Camera::Projection::orthographic),
-                         [](const auto& test) {
-                             return std::string(
-                                 projection_words[static_cast<std::size_t>(test.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(, InEachProjection, InEachProjection::all(), InEachProjection::name);
 
 // What a drag moves: element, handle, and its number beyond that one of the picture.
 struct Grabbed {

@@ -60,6 +60,21 @@ xdotool key s sleep 0.3
 quit
 has skeleton true
 
+# Samples, by a click where a viewer in memory has that widget.
+echo '{"state": "state.json"}' >steps.script
+"$ivory" scene.ivory.json --headless --size 1280x860 --script steps.script
+read -r x y < <(python3 -c '
+import json
+left, top, width, height = json.load(open("state.json"))["widgets"]["view.samples.4"]
+print(left + width // 2, top + height // 2)')
+open --size 1280x860
+xdotool mousemove --window "$window" "$x" "$y" sleep 0.2 click 1 sleep 0.3
+quit
+has samples 4
+open
+quit
+has samples 4  # or the viewer had begun with another number, and that were kept
+
 cp "$settings" before
 open --no-settings
 geometry=$(xdotool getwindowgeometry "$window")

@@ -12,6 +12,7 @@
 #include "app/viewer/same_picture.h"
 #include "core/render/canvas.h"
 #include "core/render/render.h"
+#include "tests/app/each_projection.h"
 
 namespace ivory {
 namespace {
@@ -141,14 +142,8 @@ TEST(TouchedTiles, AHiddenElementTouchesNone) {
 
 // Whatever is moved, added, taken away or changed: no pixel of another tile changes by more than
 // 1/255.
-class NothingElse : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(, NothingElse,
-                         testing::Values(Camera::Projection::perspective,
-                                         Camera::Projection::orthographic),
-                         [](const auto& test) {
-                             return std::string(
-                                 projection_words[static_cast<std::size_t>(test.param)]);
-                         });
+class NothingElse : public tests::InEachProjection {};
+INSTANTIATE_TEST_SUITE_P(, NothingElse, NothingElse::all(), NothingElse::name);
 
 TEST_P(NothingElse, ChangesVisibly) {
     const Camera camera = in_projection(ivory::camera(), GetParam());

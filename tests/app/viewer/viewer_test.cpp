@@ -126,8 +126,8 @@ TEST_P(InMemory, AtOtherSizesAndScalesToo) {
     EXPECT_TRUE(viewport_is_render(driven));
 }
 
-// Byte for byte what `render --samples` of that number draws, after an edit too; and with one sample again what
-// it was.
+// Byte for byte what `render --samples` of that number draws, after an edit too; and with one sample again
+// what it was.
 TEST_P(InMemory, SeveralSamplesAPixelAreThoseOfRender) {
     const auto context = context_or_skip({1100, 1000});
     if (!context) return;
@@ -435,15 +435,18 @@ TEST_P(InMemory, WhatMovesIsCalmAndWhatIsDrawnOverItIsOfItsMoment) {
                    {"wait": "final"})");
     const auto& frames = driven.viewer().frames();
     const std::size_t first = frames.size() - (driven.viewer().frame_count() - frames_before);
-    std::size_t shown = 0;
+    std::size_t shown = 0, held = 0;
+    ASSERT_LE(first + moving, frames.size());
     for (std::size_t i = first; i < first + moving; ++i) {
         EXPECT_TRUE(frames[i].fine == 0 || frames[i].fine == 1) << frames[i].fine;
         EXPECT_EQ(frames[i].fine == 1, frames[i].resolution == 1);
         if (frames[i].handle_to_surface) {
             EXPECT_LT(*frames[i].handle_to_surface, 0.01) << i;
         }
+        held += frames[i].handle_to_surface.has_value();
         shown += frames[i].age.has_value();
     }
+    EXPECT_EQ(held, moving);
     EXPECT_GT(shown, 5u);
     driven.play(R"({"pace": 0})");
     EXPECT_TRUE(viewport_is_render(driven));
