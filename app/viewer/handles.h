@@ -36,8 +36,8 @@ struct SeenScene {
 };
 [[nodiscard]] SeenScene as_it_stands(const ViewerState& state);
 
-// The handles of one element that lie in the rectangle, or in the viewport. No two of them hide one another: where two
-// would fall together (a circle's normal seen along itself) the later one is moved aside, to the
+// The handles of one element that lie in the rectangle, or in the viewport. No two of them hide one another:
+// where two would fall together (a circle's normal seen along itself) the later one is moved aside, to the
 // first free place of eight around it, beginning at the right and going down.
 [[nodiscard]] std::vector<Handle> handles_of(const SeenScene& seen, std::size_t element);
 [[nodiscard]] std::vector<Handle> handles_of(const ViewerState& state, std::size_t element);

@@ -36,7 +36,7 @@ struct Clusters {
     std::vector<double> above, below;     // sums of the b_i > 0 and of the -b_i > 0
     std::vector<double> inverse_square;   // 1 / w^2 of the widest
     // All elements of the field, each relative to the centre of its cluster; none where widths or
-    // skeletons differ too much for float (core/field/bundle.h).
+    // skeletons differ too much for float (core/field/bundle_field.h).
     LocalElements members;
 
     [[nodiscard]] std::size_t size() const { return x.size(); }

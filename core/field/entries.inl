@@ -22,8 +22,8 @@ namespace {
 
 // |away| as computed is off by `eta` in widths. With t |d - axis| and |t - middle| at most H, (2)
 // costs 7 u H for p (d - axis, the product; o - origin; t - middle, d, the product; the sums),
-// 2 u |c - M| and u^2 of its terms for c, and u (H + |c - M|) the difference. What finding the nearest point adds is
-// the shape's.
+// 2 u |c - M| and u^2 of its terms for c, and u (H + |c - M|) the difference. What finding the nearest point
+// adds is the shape's.
 template <Shape shape, class Tag>
 HWY_INLINE EntryErrors<Tag> etas(Tag d, const Entering& on, const Seen<Tag, shape>& e,
                                  V<Tag> c_length, V<Tag> inverse, V<Tag> inverse_width) {

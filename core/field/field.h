@@ -28,7 +28,7 @@ struct Field {
     double greatest_size = 0;  // of the skeletons: lengths and radii
     // No number is so large or so small, nor any strength so far above T or any two widths so far
     // apart, that products of four of them could leave the range of double: what
-    // core/field/bundle.h asks for.
+    // core/field/bundle_field.h asks for.
     bool compact = false;
     // Of a compact field: the greatest power of two up to the greatest width, and what T times it
     // is in [1/2, 1).
@@ -59,7 +59,7 @@ struct Field {
     // interval: |F_i| is about 2^-50 T / n there, so that all rests together stay near 2^-50 T.
     std::vector<double> cut;
 
-    // What core/field/bundle.h asks for again and again, computed to nearest.
+    // What core/field/bundle_field.h asks for again and again, computed to nearest.
     std::vector<double> mx, my, mz, parameter, length;  // SkeletonColumns::m, and so on
     std::vector<double> inverse_width;                  // 1 / w
     std::vector<double> inverse_square;                 // 1 / w^2

@@ -33,7 +33,7 @@ double spread_of(const Cone& cone) { return cone.sine <= 0.45 ? 1.04 * cone.sine
 
 namespace {
 
-// The bounds of core/field/bundle.h hold on the cone.
+// The bounds of core/field/bundle_field.h hold on the cone.
 bool is_bounded(const Field& field, const Cone& cone) {
     const Vec3d& o = cone.apex;
     return field.compact && spread_of(cone) <= 0.5 && cone.radius < 1e30 &&

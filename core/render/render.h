@@ -65,8 +65,8 @@ struct JobReport {
 };
 
 // Starts at once, but for one thread, or where the system gives none: then the caller does the work
-// in `wait_for` and `finish`. The canvas must outlive it and belongs to it until `finish` or the destructor has
-// returned; then every tile is what its TileState says, cancelled or not.
+// in `wait_for` and `finish`. The canvas must outlive it and belongs to it until `finish` or the destructor
+// has returned; then every tile is what its TileState says, cancelled or not.
 class FrameJob {
   public:
     // Throws std::bad_alloc.

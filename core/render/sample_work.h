@@ -9,9 +9,9 @@
 //     mean = c + share (D2 of the row + D2 of the column) + ...,    share = (n^2 - 1) / (24 n^2).
 // Light has kinks, where a lamp goes down. One of k in the pixel's middle makes D2 = k, and the mean is
 // k / 8 more than c: then what is added is a third of what is to be, and what is left open is
-// 2 share |D2|, of the greatest D2 of the pixel and its neighbours. Where these are much the same the light is
-// smooth, and what is left open is of the size of their difference D4. Where a neighbour's is not known twice
-// as much may be open.
+// 2 share |D2|, of the greatest D2 of the pixel and its neighbours. Where these are much the same the light
+// is smooth, and what is left open is of the size of their difference D4. Where a neighbour's is not known
+// twice as much may be open.
 // All other pixels have all of their samples traced, in the tiles of the larger picture.
 #pragma once
 

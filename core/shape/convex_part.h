@@ -27,8 +27,8 @@ inline constexpr std::size_t at_count = 0, at_margin = 1, at_n = 2, at_e1 = 5, a
                              most_numbers = at_edges + per_edge * most_edges;
 
 // What is known of the numbers. With E >= 1 as `convex_parts` found it, unit vectors and tangents are
-// within 1.1 E u of those of an exact frame, u their own unit roundoff, and coordinates within 1.1 E u S, where
-// S is the skeleton's size (its vertices' greatest distance from a). Then with L = |v|, v off by eta,
+// within 1.1 E u of those of an exact frame, u their own unit roundoff, and coordinates within 1.1 E u S,
+// where S is the skeleton's size (its vertices' greatest distance from a). Then with L = |v|, v off by eta,
 //   - (x, y, h) is off by eta + 7 E u L: as if p were that far away, which moves a distance by no more;
 //   - the distance above an edge is off by less than tau = margin (|x| + |y| + S), margin = 8 E u;
 //   - what leads from the clamped foot on an edge to p is off by 7 E u (1.5 L + S) + 3 E u S.

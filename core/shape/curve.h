@@ -120,8 +120,8 @@ struct CurveSkeleton {
             std::max({std::abs(c.a.x), std::abs(c.a.y), std::abs(c.a.z)}) + c.parameter;
         return 0x1p-46 * c.parameter + 0x1p-50 * largest;
     }
-    // Of the arc itself: its ends, and where a coordinate turns. A place beside one where it does is off by the
-    // square of that.
+    // Of the arc itself: its ends, and where a coordinate turns. A place beside one where it does is off by
+    // the square of that.
     static Box3 box_of_arc(const SkeletonColumns& c) {
         using namespace curve_arc;
         Box3 box;
@@ -443,12 +443,13 @@ struct ShapeLanes<CurveSkeleton> {
         return hn::Max(hn::Mul(constant(d, 3), speeding), hn::Mul(constant(d, 0x1p-5), square));
     }
 
-    // With B < 1 an upper bound of (p - c).c'' / |c'|^2 the foot is unique and s'' w^2 / 2 >= 1 - 1 / (1 - B),
-    // where
+    // With B < 1 an upper bound of (p - c).c'' / |c'|^2 the foot is unique, and
+    // s'' w^2 / 2 >= 1 - 1 / (1 - B), where
     //     (p - c).c'' <= d |c''|,  or  2 v.k2 + |v| |c'''| + |c'.c''| + |c''| (|k2| + |k3|) + |k1| |c'''|,
     // in which v.k2 is linear along the stretch. `inverse` is 1 / (1 - B), once more as large as what
-    // d |c'''| is to 3 |c'.c''| in N of `errors`, over the greatest |c'|. It is 0 where an arc counts as a point: of no size; or one end of it is the
-    // nearest to all points of the stretch, and Newton's first step leads there. That is so where
+    // d |c'''| is to 3 |c'.c''| in N of `errors`, over the greatest |c'|. It is 0 where an arc counts as a
+    // point: of no size; or one end of it is the nearest to all points of the stretch, and Newton's first
+    // step leads there. That is so where
     //     |g(x) - v.k1| <= |v| |c' - k1| + (|c'| + ...)^2
     // leaves g one sign and at least |g'| <= |c'|^2 + d |c''|.
     template <class Tag>
@@ -512,8 +513,8 @@ struct ShapeLanes<CurveSkeleton> {
 
     // With L = |p - a| and S the size: v is off by eta and 2 u (L + S), c(x) by 8 u |c'|, which with the sums
     // makes `own`; g by 8 u (L + S) |c'| and what v is off by, and x, where B < 1, by that over |g'| >=
-    // |c'|^2 (1 - B), which moves c(x) by 16 u (L + S) / (1 - B). Newton's steps from the middle leave, clamped
-    // or not,
+    // |c'|^2 (1 - B), which moves c(x) by 16 u (L + S) / (1 - B). Newton's steps from the middle leave,
+    // clamped or not,
     //     e' <= N e^2,  N = |g''| / (2 |g'|) <= (3 |c'.c''| + d |c'''|) / (2 |c'|^2 (1 - B)),
     // of a way e <= 1, along the arc |c'| e. Another place is taken where it is nearer by the share m = 16
     // margins of the square: that is for rounding alone, where m d < 8 own: then the two are within

@@ -159,7 +159,7 @@ struct ShapeLanes<DiscSkeleton> {
         return range_of_rays(d, e.magnitude, near, hn::Max(a.distance, b.distance), s, error);
     }
 
-    // x^2 <= s: mathematics of core/field/bundle.h. Where s'' jumps, at rho = r, it stays between 0
+    // x^2 <= s: mathematics of core/field/bundle_field.h. Where s'' jumps, at rho = r, it stays between 0
     // and 2 / w^2.
     template <class Tag>
     static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>&,

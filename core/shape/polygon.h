@@ -255,7 +255,7 @@ struct ShapeLanes<PolygonSkeleton> {
         return range_of_rays(d, e.magnitude, near, hn::Max(d0, d1), s, error);
     }
 
-    // x^2 <= s: mathematics of core/field/bundle.h. Where s'' jumps it stays between 0 and 2 / w^2.
+    // x^2 <= s: mathematics of core/field/bundle_field.h. Where s'' jumps it stays between 0 and 2 / w^2.
     template <class Tag>
     static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>&,
                                                           const Reach<hn::TFromD<Tag>>&, V<Tag>,

@@ -241,7 +241,7 @@ struct SegmentLanes {
         return range_of_rays(d, e.magnitude, near, hn::Max(d0, d1), s, error);
     }
 
-    // x^2 <= s: mathematics of core/field/bundle.h.
+    // x^2 <= s: mathematics of core/field/bundle_field.h.
     template <class Tag>
     static HWY_INLINE CurvatureRange<Tag> curvature_range(const Seen<Tag, shape>&,
                                                           const Reach<hn::TFromD<Tag>>&, V<Tag>,

@@ -46,8 +46,8 @@ HWY_INLINE Vec3v<Tag> from_first_place(Tag d, const BundleEntry<hn::TFromD<Tag>>
             hn::Sub(p.z, hn::Set(d, e.cz))};
 }
 
-// (1) of core/field/bundle.h: a lower bound of the distance between two places at most L apart from lower
-// bounds of those there, with which it rises. Errors have to be taken off before: near 0 the result
+// (1) of core/field/bundle_field.h: a lower bound of the distance between two places at most L apart from
+// lower bounds of those there, with which it rises. Errors have to be taken off before: near 0 the result
 // follows their square roots.
 template <class Tag>
 HWY_INLINE V<Tag> least_between(Tag d, V<Tag> d0, V<Tag> d1, hn::TFromD<Tag> L) {

@@ -265,9 +265,9 @@ struct TaperLanes {
 
     // (2), or with w* (|m|^2 + alpha r) = w* |m|^2 W in its place
     //     (D^2)'' / 2 >= 1 - (1 + 2 kappa q)^2 / (W max(W, 1)),
-    // or that of a point, whichever says more; `inverse` is what `errors` needs of g = w* / W = 1 / (1 - kappa^2 q^2), over
-    // |m|. Where neither says anything nothing is known of f''; the gradient is defined but at the apex
-    // itself.
+    // or that of a point, whichever says more; `inverse` is what `errors` needs of g, over |m|, with
+    // g = w* / W = 1 / (1 - kappa^2 q^2). Where neither says anything nothing is known of f''; the gradient
+    // is defined but at the apex itself.
     template <class Tag>
     static HWY_INLINE Turning<Tag> turning(const Seen<Tag, shape>& e,
                                            const Reach<hn::TFromD<Tag>>& s, V<Tag> error,

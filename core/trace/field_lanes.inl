@@ -63,8 +63,9 @@ struct Branches {
     }
 };
 
-// Returns the greatest k of the parts; `entry` leads to the first, then to what follows the last. Within reach a part of an element
-// with b > 0 whose F is less by D is no greater than if its slope were less by D / reach.
+// Returns the greatest k of the parts; `entry` leads to the first, then to what follows the last. Within
+// reach a part of an element with b > 0 whose F is less by D is no greater than if its slope were less by
+// D / reach.
 template <Shape shape, KernelKind kind, class Tag>
 HWY_INLINE V<Tag> add_parts(Tag d, const BundleEntry<hn::TFromD<Tag>>*& entry, const Vec3v<Tag>& p,
                             const Vec3v<Tag>& direction, V<Tag>& slope_sum,

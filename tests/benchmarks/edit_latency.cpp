@@ -2,8 +2,8 @@
 // which decides what an edit leaves valid, without a window to draw in.
 //
 // Each kind of edit is made and taken back, over and over, from a final picture each time. first:
-// until a picture of the edited scene is complete, of every pixel or fewer; final: until it equals a full
-// rendering. Medians, in milliseconds.
+// until a picture of the edited scene is complete, of every pixel or fewer; final: until the session says
+// that no byte of it will change, at one sample a pixel. Medians, in milliseconds.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -2,14 +2,14 @@
 """From an edit to its picture, kind by kind.
 
 edits.csv: the viewer's render session without a window: until a first picture of the edited scene is
-complete, and until it equals a full rendering (after a change of shape that includes the tenth of a
-second in which the hand has to rest).
+complete, and until the session says that no byte of it will change, at one sample a pixel (after a change
+of shape that includes the tenth of a second in which the hand has to rest).
 
 edits_in_window.csv: the viewer itself, without a display, software OpenGL and all, every picture of
 every pixel (motion has those that have to be there in time). first: from the input to the first changed
 picture (median and greatest of the steps, of which a drag has ten); final:
-all frames from the first input, such as a click into a field, until the picture equals a full
-rendering. Tiles: how many were traced in all these steps together, and how many there are."""
+all frames from the first input, such as a click into a field, until the viewer says that it is final.
+Tiles: how many were traced in all these steps together, and how many there are."""
 
 import argparse
 import csv

@@ -12,7 +12,8 @@ motion.csv, one row for each scene, size and motion:
   age_ms, age_ms_95    from an input to the end of the frame that shows its picture: median, 95 %
   handle_px            the farthest that a dragged handle is drawn from where its surface has it
   hand_px              and from where the hand has it
-  final_ms             from the last input until the final picture is there and nothing fades
+  final_ms             from the last input until a frame shows every pixel, of one sample; the last tiles
+                       may still be fading in
   others               share of all cores that other processes used meanwhile: with more than a tenth
                        the times are theirs, too"""
 
