@@ -86,7 +86,7 @@ struct Access {
     }
     std::string take(const Look& setting, const JsonValue& value) const {
         for (std::size_t i = 0; i < theme_words.size(); ++i) {
-            if (value.kind() != JsonKind::text || !value.is_text(theme_words[i])) continue;
+            if (value.kind() != JsonKind::text || !value.is_word(theme_words[i])) continue;
             all.*setting.value = static_cast<Theme>(i);
             return "";
         }

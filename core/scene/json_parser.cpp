@@ -20,29 +20,50 @@ namespace {
 
 using namespace json_text;
 
-// The keys of one object, as offsets into its text.
+// The keys of one object: a few as they are written, where they have no escapes; else all of them as
+// offsets, found by what they stand for.
 class KeySet {
   public:
     explicit KeySet(std::string_view json) : json_(json) {}
 
     void clear() {
-        slots_.assign(least_slots, none);
+        few_count_ = 0;
+        slots_.clear();
         count_ = 0;
     }
 
-    // False where the key is there already. `key` is what the text at `offset` stands for.
-    bool insert(std::string_view key, std::size_t offset) {
+    // False where the key is there already. Its quote stands at `offset`, and it ends before `end`.
+    bool insert(std::size_t offset, std::size_t end, bool has_escapes) {
+        if (slots_.empty()) {
+            if (!has_escapes && few_count_ < most_few) {
+                const std::string_view key = json_.substr(offset + 1, end - offset - 1);
+                for (std::size_t i = 0; i < few_count_; ++i) {
+                    if (few_[i].front() == key.front() && few_[i] == key) return false;
+                }
+                few_[few_count_++] = key;
+                return true;
+            }
+            for (std::size_t i = 0; i < few_count_; ++i) {
+                insert_offset(static_cast<std::size_t>(few_[i].data() - json_.data()) - 1);
+            }
+        }
+        return insert_offset(offset);
+    }
+
+  private:
+    static constexpr std::size_t most_few = 16;
+    static constexpr std::size_t least_slots = 4 * most_few;  // a power of two
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    bool insert_offset(std::size_t offset) {
         if (2 * (count_ + 1) > slots_.size()) grow();
-        std::uint32_t& slot = slot_of(key);
+        std::string buffer;
+        std::uint32_t& slot = slot_of(decoded(json_, offset, buffer));
         if (slot != none) return false;
         slot = static_cast<std::uint32_t>(offset);
         ++count_;
         return true;
     }
-
-  private:
-    static constexpr std::size_t least_slots = 16;  // a power of two
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
     // Where the key is, or is to be put.
     std::uint32_t& slot_of(std::string_view key) {
@@ -64,8 +85,11 @@ class KeySet {
     }
 
     std::string_view json_;
-    std::vector<std::uint32_t> slots_;
-    std::size_t count_ = 0;
+    // The first `few_count_` of them, each with the quote behind it.
+    std::array<std::string_view, most_few> few_;
+    std::size_t few_count_ = 0;
+    std::vector<std::uint32_t> slots_;  // empty: all keys are in `few_`
+    std::size_t count_ = 0;             // of the slots that are not `none`
     std::string buffer_;
 };
 
@@ -80,308 +104,333 @@ constexpr std::string_view the_end = "end of input";
 constexpr std::string_view bad_literal = "invalid literal";
 constexpr std::string_view bad_escape = "invalid string: forbidden character after backslash";
 
-// One pass from left to right that checks everything and notes where each value stands.
+// One pass from left to right that checks everything and notes where each value stands. What reads
+// something takes the place where it begins and answers where it ends: a member of the parser would
+// have to be written before each character is read, which for all that a compiler knows is a part
+// of it.
 class Parser {
   public:
     // Of a text that has no bytes below a blank but line ends and tabs.
     Parser(const SourceText& source, std::size_t most_entries, const Stop& stop)
         : source_(source),
           stop_(stop),
-          at_(source.text().data()),
-          next_look_(at_),
-          end_(at_ + source.text().size()) {
+          begin_(source.text().data()),
+          end_(begin_ + source.text().size()) {
         index_.reserve(most_entries);
         levels_.reserve(deepest_nesting);
-        if (source.text().starts_with(byte_order_mark)) at_ += byte_order_mark.size();
-        look();
     }
 
     std::vector<std::uint32_t> parse() {
-        skip_space();
-        value();
-        skip_space();
-        if (at_ != end_) unexpected(the_end);
+        const char* at = begin_;
+        if (source_.text().starts_with(byte_order_mark)) at += byte_order_mark.size();
+        look(at);
+        at = skip_space(value(skip_space(at)));
+        if (at != end_) unexpected(at, the_end);
         return std::move(index_);
     }
 
   private:
     struct Level {
         bool is_list;
+        std::size_t entry;           // the one that `close` completes
         std::size_t count = 0;       // of the values before the one that is being read
         std::size_t key_offset = 0;  // of its key
+
+        char end() const { return is_list ? ']' : '}'; }
     };
 
-    void look() {
+    void look(const char* at) {
         look_at(stop_);
-        next_look_ = at_ + std::min<std::ptrdiff_t>(end_ - at_, bytes_between_looks);
+        next_look_ = at + std::min<std::ptrdiff_t>(end_ - at, bytes_between_looks);
     }
 
     // 0, which stands nowhere in the text, at the end.
-    char peek() const { return at_ == end_ ? '\0' : *at_; }
+    char peek(const char* at) const { return at == end_ ? '\0' : *at; }
 
-    std::size_t offset() const { return static_cast<std::size_t>(at_ - source_.text().data()); }
+    std::size_t offset(const char* at) const { return static_cast<std::size_t>(at - begin_); }
 
     template <class Wanted>
-    void skip_while(Wanted wanted) {
+    const char* skip_while(const char* at, Wanted wanted) {
         while (true) {
-            while (at_ < next_look_ && wanted(*at_)) ++at_;
-            if (at_ < next_look_ || at_ == end_) return;
-            look();
+            while (at < next_look_ && wanted(*at)) ++at;
+            if (at < next_look_ || at == end_) return at;
+            look(at);
         }
     }
 
-    void skip_space() {
-        skip_while([](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; });
+    const char* skip_space(const char* at) {
+        return skip_while(at,
+                          [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; });
     }
 
-    void add_entry() { index_.push_back(static_cast<std::uint32_t>(offset())); }
+    const char* skip_digits(const char* at) {
+        while (next_look_ - at >= eight) {
+            const int digits = leading_digits(eight_at(at));
+            at += digits;
+            if (digits < eight) return at;
+        }
+        return skip_while(at, is_digit);
+    }
 
-    void value() {
-        switch (peek()) {
-            case '{':
-                return object();
-            case '[':
-                return list();
+    const char* skip_plain(const char* at) {
+        while (next_look_ - at >= eight) {
+            const int plain = leading_plain(eight_at(at));
+            at += plain;
+            if (plain < eight) return at;
+        }
+        return skip_while(at, is_plain_in_text);
+    }
+
+    void add_entry(const char* at) { index_.push_back(static_cast<std::uint32_t>(offset(at))); }
+
+    const char* value(const char* at) {
+        while (true) {
+            if (peek(at) == '[' || peek(at) == '{') {
+                at = open(at);
+                if (peek(at) != levels_.back().end()) {
+                    at = item(at);
+                    continue;
+                }
+                at = close(at);
+            } else {
+                at = scalar(at);
+            }
+            while (true) {
+                if (levels_.empty()) return at;
+                Level& level = levels_.back();
+                at = skip_space(at);
+                if (peek(at) == ',') {
+                    ++level.count;
+                    at = item(skip_space(at + 1));
+                    break;
+                }
+                if (peek(at) != level.end()) {
+                    unexpected(at, level.is_list ? more_of_list : more_of_object);
+                }
+                at = close(at);
+            }
+        }
+    }
+
+    // Up to the value of an item of the innermost level.
+    const char* item(const char* at) { return levels_.back().is_list ? at : key(at); }
+
+    const char* scalar(const char* at) {
+        const char first = peek(at);
+        if (first != '-' && !is_digit(first) && first != '"' && first != 't' && first != 'f' &&
+            first != 'n') {
+            unexpected(at, a_value);
+        }
+        add_entry(at);
+        switch (first) {
             case '"':
-                add_entry();
-                return text(a_value);
+                return text(at, a_value);
             case 't':
-                add_entry();
-                return literal("true", a_value);
+                return literal(at, "true", a_value);
             case 'f':
-                add_entry();
-                return literal("false", a_value);
+                return literal(at, "false", a_value);
             case 'n':
-                add_entry();
-                return literal("null", a_value);
+                return literal(at, "null", a_value);
             default:
-                if (peek() != '-' && !is_digit(peek())) unexpected(a_value);
-                add_entry();
-                return finite_number();
+                return finite_number(at);
         }
     }
 
-    void list() {
-        const std::size_t entry = open(true);
-        if (peek() != ']') {
-            while (true) {
-                value();
-                ++levels_.back().count;
-                skip_space();
-                if (peek() != ',') break;
-                ++at_;
-                skip_space();
-            }
-            if (peek() != ']') unexpected(more_of_list);
-        }
-        close(entry);
-    }
-
-    void object() {
-        const std::size_t entry = open(false);
-        if (peek() != '}') {
-            while (true) {
-                if (peek() != '"') unexpected(a_key);
-                key();
-                skip_space();
-                if (peek() != ':') unexpected(a_colon);
-                ++at_;
-                skip_space();
-                value();
-                skip_space();
-                if (peek() != ',') break;
-                ++at_;
-                skip_space();
-            }
-            if (peek() != '}') unexpected(more_of_object);
-        }
-        close(entry);
-    }
-
-    // Passes the bracket; the entry that `close` completes.
-    std::size_t open(bool is_list) {
+    // Passes the bracket.
+    const char* open(const char* at) {
         if (levels_.size() == deepest_nesting) {
-            throw source_.fault(offset(), "",
+            throw source_.fault(offset(at), "",
                                 "brackets nest deeper than " + std::to_string(deepest_nesting) +
                                     " levels; the format needs a few");
         }
-        levels_.push_back({is_list});
-        if (!is_list) {
+        add_entry(at);
+        levels_.push_back({*at == '[', index_.size()});
+        index_.push_back(0);
+        if (*at == '{') {
             if (keys_.size() < levels_.size()) keys_.resize(levels_.size(), KeySet(source_.text()));
             keys_[levels_.size() - 1].clear();
         }
-        add_entry();
-        index_.push_back(0);
-        ++at_;
-        skip_space();
-        return index_.size() - 1;
+        return skip_space(at + 1);
     }
 
-    void close(std::size_t entry) {
-        index_[entry] = static_cast<std::uint32_t>(index_.size());
+    const char* close(const char* at) {
+        index_[levels_.back().entry] = static_cast<std::uint32_t>(index_.size());
         levels_.pop_back();
-        ++at_;
+        return at + 1;
     }
 
-    void key() {
-        const std::size_t start = offset();
-        add_entry();
-        text(a_key);
-        const std::string_view key = decoded(source_.text(), start, buffer_);
-        if (!keys_[levels_.size() - 1].insert(key, start)) {
-            throw source_.fault(start, pointer_into(pointer(levels_.size() - 1), key),
-                                "the key " + in_quotes(key) +
-                                    " stands here for the second time in its object; keep one");
-        }
+    // And what stands between it and its value.
+    const char* key(const char* at) {
+        if (peek(at) != '"') unexpected(at, a_key);
+        add_entry(at);
+        const std::size_t start = offset(at);
+        at = skip_plain(at + 1);
+        const bool is_plain = peek(at) == '"';
+        at = is_plain ? at + 1 : rest_of_text(at, a_key);
+        if (!keys_[levels_.size() - 1].insert(start, offset(at), !is_plain)) refuse_twin(start);
         levels_.back().key_offset = start;
+        at = skip_space(at);
+        if (peek(at) != ':') unexpected(at, a_colon);
+        return skip_space(at + 1);
     }
 
-    void text(std::string_view expected) {
-        ++at_;
+    [[noreturn]] void refuse_twin(std::size_t start) const {
+        std::string buffer;
+        const std::string_view key = decoded(source_.text(), start, buffer);
+        throw source_.fault(start, pointer_into(pointer(levels_.size() - 1), key),
+                            "the key " + in_quotes(key) +
+                                " stands here for the second time in its object; keep one");
+    }
+
+    const char* text(const char* at, std::string_view expected) {
+        at = skip_plain(at + 1);
+        return peek(at) == '"' ? at + 1 : rest_of_text(at, expected);
+    }
+
+    // From the first character on that does not stand for itself.
+    const char* rest_of_text(const char* at, std::string_view expected) {
         while (true) {
-            skip_while(is_plain_in_text);
-            switch (peek()) {
+            switch (peek(at)) {
                 case '"':
-                    ++at_;
-                    return;
+                    return at + 1;
                 case '\\':
-                    ++at_;
-                    escape(expected);
+                    at = escape(at + 1, expected);
                     break;
                 case '\n':
-                    refuse(
-                        "invalid string: control character U+000A (LF) must be escaped to "
-                        "\\u000A or \\n",
-                        expected);
+                    refuse(at,
+                           "invalid string: control character U+000A (LF) must be escaped to "
+                           "\\u000A or \\n",
+                           expected);
                 case '\r':
-                    refuse(
-                        "invalid string: control character U+000D (CR) must be escaped to "
-                        "\\u000D or \\r",
-                        expected);
+                    refuse(at,
+                           "invalid string: control character U+000D (CR) must be escaped to "
+                           "\\u000D or \\r",
+                           expected);
                 case '\t':
-                    refuse(
-                        "invalid string: control character U+0009 (HT) must be escaped to "
-                        "\\u0009 or \\t",
-                        expected);
+                    refuse(at,
+                           "invalid string: control character U+0009 (HT) must be escaped to "
+                           "\\u0009 or \\t",
+                           expected);
                 default:
                     refuse_end();
             }
+            at = skip_plain(at);
         }
     }
 
-    void escape(std::string_view expected) {
+    // Behind the backslash.
+    const char* escape(const char* at, std::string_view expected) {
         constexpr std::string_view letters = "\"\\/bfnrt";
-        if (at_ != end_ && letters.find(*at_) != std::string_view::npos) {
-            ++at_;
-            return;
-        }
-        if (peek() != 'u') refuse(bad_escape, expected);
-        ++at_;
-        const unsigned unit = four_digits(expected);
+        if (at != end_ && letters.find(*at) != std::string_view::npos) return at + 1;
+        if (peek(at) != 'u') refuse(at, bad_escape, expected);
+        const unsigned unit = four_digits(++at, expected);
+        at += 4;
         if (is_high_surrogate(unit)) {
             constexpr std::string_view alone =
                 "invalid string: surrogate U+D800..U+DBFF must be followed by U+DC00..U+DFFF";
             for (const char c : {'\\', 'u'}) {
-                if (peek() != c) refuse(alone, expected);
-                ++at_;
+                if (peek(at) != c) refuse(at, alone, expected);
+                ++at;
             }
-            if (!is_low_surrogate(four_digits(expected))) refuse_last(alone, expected);
+            const bool is_low = is_low_surrogate(four_digits(at, expected));
+            at += 4;
+            if (!is_low) refuse(at - 1, alone, expected);
         } else if (is_low_surrogate(unit)) {
-            refuse_last("invalid string: surrogate U+DC00..U+DFFF must follow U+D800..U+DBFF",
-                        expected);
+            refuse(at - 1, "invalid string: surrogate U+DC00..U+DFFF must follow U+D800..U+DBFF",
+                   expected);
         }
+        return at;
     }
 
-    unsigned four_digits(std::string_view expected) {
-        const std::size_t start = offset();
-        for (int i = 0; i < 4; ++i) {
-            const char c = peek();
+    unsigned four_digits(const char* at, std::string_view expected) {
+        const std::size_t start = offset(at);
+        for (int i = 0; i < 4; ++i, ++at) {
+            const char c = peek(at);
             if (!is_digit(c) && !(c >= 'a' && c <= 'f') && !(c >= 'A' && c <= 'F')) {
-                refuse("invalid string: '\\u' must be followed by 4 hex digits", expected);
+                refuse(at, "invalid string: '\\u' must be followed by 4 hex digits", expected);
             }
-            ++at_;
         }
         return hexadecimal(source_.text().substr(start, 4));
     }
 
-    void literal(std::string_view word, std::string_view expected) {
+    const char* literal(const char* at, std::string_view word, std::string_view expected) {
         for (const char c : word) {
-            if (peek() != c) refuse(bad_literal, expected);
-            ++at_;
+            if (peek(at) != c) refuse(at, bad_literal, expected);
+            ++at;
         }
+        return at;
     }
 
-    void finite_number() {
-        const std::size_t start = offset();
-        if (!number(a_value)) return;
-        const std::string_view written = source_.text().substr(start, offset() - start);
+    const char* finite_number(const char* at) {
+        bool may_be_too_large = false;
+        const char* const end = number(at, a_value, may_be_too_large);
+        if (may_be_too_large) must_be_finite(at, end);
+        return end;
+    }
+
+    void must_be_finite(const char* at, const char* end) const {
+        const std::string_view written(at, static_cast<std::size_t>(end - at));
         if (std::isfinite(number_at(written))) return;
-        throw source_.fault(start, pointer(levels_.size()),
+        throw source_.fault(offset(at), pointer(levels_.size()),
                             "the number " + in_quotes(written) +
                                 " is not finite as a double; it must lie within "
                                 "+-1.7976931348623157e308");
     }
 
-    // Whether it may be larger than the largest double.
-    bool number(std::string_view expected) {
+    // Says too whether it may be larger than the largest double.
+    const char* number(const char* at, std::string_view expected, bool& may_be_too_large) {
         constexpr std::ptrdiff_t most_harmless_digits = 308;
-        const char* const start = at_;
-        if (*at_ == '-') ++at_;
-        if (peek() == '0') {
-            ++at_;
-        } else {
-            digits("invalid number; expected digit after '-'", expected);
+        const char* const start = at;
+        if (*at == '-') ++at;
+        at = peek(at) == '0' ? at + 1
+                             : digits(at, "invalid number; expected digit after '-'", expected);
+        may_be_too_large = at - start > most_harmless_digits;
+        if (peek(at) == '.') {
+            at = digits(at + 1, "invalid number; expected digit after '.'", expected);
         }
-        const bool is_long = at_ - start > most_harmless_digits;
-        if (peek() == '.') {
-            ++at_;
-            digits("invalid number; expected digit after '.'", expected);
+        if (peek(at) != 'e' && peek(at) != 'E') return at;
+        may_be_too_large = true;
+        ++at;
+        if (peek(at) == '+' || peek(at) == '-') {
+            return digits(at + 1, "invalid number; expected digit after exponent sign", expected);
         }
-        if (peek() != 'e' && peek() != 'E') return is_long;
-        ++at_;
-        if (peek() == '+' || peek() == '-') {
-            ++at_;
-            digits("invalid number; expected digit after exponent sign", expected);
-        } else {
-            digits("invalid number; expected '+', '-', or digit after exponent", expected);
-        }
-        return true;
+        return digits(at, "invalid number; expected '+', '-', or digit after exponent", expected);
     }
 
     // One at least.
-    void digits(std::string_view without, std::string_view expected) {
-        if (!is_digit(peek())) refuse(without, expected);
-        skip_while(is_digit);
+    const char* digits(const char* at, std::string_view without, std::string_view expected) {
+        if (!is_digit(peek(at))) refuse(at, without, expected);
+        return skip_digits(at);
     }
 
     // What stands here is not what the grammar allows.
-    [[noreturn]] void unexpected(std::string_view expected) {
+    [[noreturn]] void unexpected(const char* at, std::string_view expected) {
         std::string name;
-        const char c = peek();
+        const char c = peek(at);
         if (c == '"') {
-            text(expected);
+            at = text(at, expected);
             name = "string literal";
         } else if (c == '-' || is_digit(c)) {
-            number(expected);
+            bool ignored = false;
+            at = number(at, expected, ignored);
             name = "number literal";
         } else if (c == 't' || c == 'f' || c == 'n') {
             const std::string word = c == 't' ? "true" : c == 'f' ? "false" : "null";
-            literal(word, expected);
+            at = literal(at, word, expected);
             name = word + " literal";
         } else if (c == '[' || c == ']' || c == '{' || c == '}' || c == ':' || c == ',') {
-            ++at_;
+            ++at;
             name = {'\'', c, '\''};
         } else {
-            refuse(bad_literal, expected);
+            refuse(at, bad_literal, expected);
         }
-        --at_;
-        throw syntax_fault("unexpected " + name + "; expected " + std::string(expected));
+        throw syntax_fault(at - 1, "unexpected " + name + "; expected " + std::string(expected));
     }
 
     // The byte here makes no sense.
-    [[noreturn]] void refuse(std::string_view what, std::string_view expected) {
-        if (at_ == end_) refuse_end();
-        const std::string_view rest = source_.text().substr(offset());
+    [[noreturn]] void refuse(const char* at, std::string_view what, std::string_view expected) {
+        if (at == end_) refuse_end();
+        const std::string_view rest = source_.text().substr(offset(at));
         std::size_t bytes = 1;
         while (bytes < rest.size() && !starts_character(rest[bytes])) ++bytes;
         std::string message = std::string(what) + " at " + in_quotes(rest.substr(0, bytes));
@@ -392,13 +441,7 @@ class Parser {
         if (expected == a_value && what == bad_escape) {
             message += R"(; expected one of " \ / b f n r t u)";
         }
-        throw syntax_fault(message);
-    }
-
-    // The byte before makes no sense.
-    [[noreturn]] void refuse_last(std::string_view what, std::string_view expected) {
-        --at_;
-        refuse(what, expected);
+        throw syntax_fault(at, message);
     }
 
     [[noreturn]] void refuse_end() {
@@ -410,8 +453,8 @@ class Parser {
                                       "; close it, or restore the part that was cut off");
     }
 
-    Error syntax_fault(const std::string& what) const {
-        return source_.fault(offset(), "", "not JSON: " + what);
+    Error syntax_fault(const char* at, const std::string& what) const {
+        return source_.fault(offset(at), "", "not JSON: " + what);
     }
 
     // Of the value that the outermost `count` open levels lead to.
@@ -433,13 +476,12 @@ class Parser {
 
     const SourceText& source_;
     const Stop& stop_;
-    const char* at_;
-    const char* next_look_;
-    const char* end_;
+    const char* const begin_;
+    const char* const end_;
+    const char* next_look_ = nullptr;
     std::vector<std::uint32_t> index_;
     std::vector<Level> levels_;
     std::vector<KeySet> keys_;  // one for each level, kept for the next object there
-    std::string buffer_;
 };
 
 }  // namespace

@@ -41,12 +41,19 @@ double JsonValue::number() const { return number_at(document_->text().substr(off
 
 std::string JsonValue::text() const {
     std::string buffer;
-    return std::string(decoded(document_->text(), offset(), buffer));
+    return std::string(text(buffer));
 }
 
-bool JsonValue::is_text(std::string_view text) const {
+std::string_view JsonValue::text(std::string& buffer) const {
+    return decoded(document_->text(), offset(), buffer);
+}
+
+bool JsonValue::is_word(std::string_view word) const {
+    const std::string_view rest = document_->text().substr(offset() + 1);
+    if (rest.size() > word.size() && rest[word.size()] == '"' && rest.starts_with(word))
+        return true;
     std::string buffer;
-    return decoded(document_->text(), offset(), buffer) == text;
+    return text(buffer) == word;
 }
 
 JsonRange<JsonValue> JsonValue::items() const { return {*document_, entry_ + 2, end()}; }
@@ -76,7 +83,7 @@ std::string JsonValue::description() const {
 
 std::optional<JsonValue> find_member(const JsonValue& object, std::string_view key) {
     for (const JsonMember member : object.members()) {
-        if (member.key.is_text(key)) return member.value;
+        if (member.key.is_word(key)) return member.value;
     }
     return std::nullopt;
 }

@@ -98,7 +98,10 @@ class JsonValue {
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] double number() const;
     [[nodiscard]] std::string text() const;
-    [[nodiscard]] bool is_text(std::string_view text) const;
+    // A part of the document's text, or of `buffer` where there are escapes.
+    [[nodiscard]] std::string_view text(std::string& buffer) const;
+    // Whether it is the text `word`, which has neither quotes nor backslashes.
+    [[nodiscard]] bool is_word(std::string_view word) const;
     [[nodiscard]] JsonRange<JsonValue> items() const;     // of a list
     [[nodiscard]] JsonRange<JsonMember> members() const;  // of an object, no key twice
 
@@ -170,7 +173,7 @@ inline std::size_t JsonValue::end() const {
     return is_container ? document_->index()[entry_ + 1] : entry_ + 1;
 }
 
-// The value of `key`, or nothing.
+// The value of `key`, which has neither quotes nor backslashes, or nothing.
 [[nodiscard]] std::optional<JsonValue> find_member(const JsonValue& object, std::string_view key);
 
 // The value that a JSON pointer (RFC 6901) leads to, or the last one on its way that is there.

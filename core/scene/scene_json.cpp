@@ -46,6 +46,7 @@ constexpr auto skeleton_keys = std::apply(
     S::members());
 template <class S>
 constexpr auto keys_of_element = joined(skeleton_keys<S>, element_keys);
+constexpr std::size_t most_keys = 16;  // more than any kind of object has
 
 // "a point"; no shape's word begins with a vowel.
 template <class S>
@@ -92,6 +93,8 @@ class Steps {
 struct Reading {
     const SourceText& source;
     Steps steps;
+    // Where the first, second ... key of an object stands in its format: as in the last such.
+    std::array<std::size_t, most_keys> places{};
 };
 
 // A value of the document and the way to it, which becomes a JSON pointer only in a message. Lives
@@ -139,17 +142,21 @@ struct Node {
 class Members {
   public:
     Members(const Node& object, const ObjectFormat& format) : object_(object), format_(format) {
+        std::size_t count = 0;
         for (const JsonMember member : object.value.members()) {
             object.reading.steps.take_one();
-            const std::string key = member.key.text();
-            const std::size_t place = place_of(key);
-            if (place == format.keys.size()) throw unknown_key(member.key.offset(), key);
+            // Most objects of a file have the same keys in the same order.
+            std::size_t& place = object.reading.places[count++];
+            if (place >= format.keys.size() || !member.key.is_word(format.keys[place])) {
+                place = place_of(member.key);
+            }
             values_[place] = member.value;
         }
     }
 
     std::optional<Node> optional(std::string_view key) const {
-        const std::optional<JsonValue>& value = values_[place_of(key)];
+        while (format_.keys[next_] != key) next_ = (next_ + 1) % format_.keys.size();
+        const std::optional<JsonValue>& value = values_[next_];
         if (!value) return std::nullopt;
         return Node{object_.reading, *value, &object_, key};
     }
@@ -160,10 +167,11 @@ class Members {
     }
 
   private:
-    static constexpr std::size_t most_keys = 16;
-
-    std::size_t place_of(std::string_view key) const {
-        const auto place = std::find(format_.keys.begin(), format_.keys.end(), key);
+    std::size_t place_of(const JsonValue& key) const {
+        std::string buffer;
+        const std::string_view written = key.text(buffer);
+        const auto place = std::find(format_.keys.begin(), format_.keys.end(), written);
+        if (place == format_.keys.end()) throw unknown_key(key.offset(), written);
         return static_cast<std::size_t>(place - format_.keys.begin());
     }
 
@@ -178,7 +186,9 @@ class Members {
 
     const Node& object_;
     const ObjectFormat& format_;
-    std::array<std::optional<JsonValue>, most_keys> values_;  // in the order of the format's keys
+    // In the order of the format's keys.
+    std::array<std::optional<JsonValue>, most_keys> values_;
+    mutable std::size_t next_ = 0;  // the key that was asked for last; others follow in that order
 };
 
 // Leaves the value as it is where the key is missing.
@@ -190,9 +200,9 @@ void read_if_there(const Members& members, std::string_view key, Value& value) {
 // One of `words`, by its place among them; a message offers the first `offered` of them.
 std::size_t one_of(const Node& node, Words words, std::size_t offered) {
     if (node.value.kind() == JsonKind::text) {
-        for (std::size_t i = 0; i < words.size(); ++i) {
-            if (node.value.is_text(words[i])) return i;
-        }
+        std::string buffer;
+        const auto word = std::find(words.begin(), words.end(), node.value.text(buffer));
+        if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
     }
     throw node.wrong_kind(listed(words.first(offered), "or"));
 }
@@ -306,6 +316,7 @@ void read_widths(const Node& node, std::size_t places, Element& element) {
 
 template <class S>
 void read_element(const Node& node, Element& element) {
+    static_assert(keys_of_element<S>.size() < most_keys);
     const ObjectFormat format{word_with_article<S>, keys_of_element<S>, skeleton_keys<S>};
     const Members members(node, format);
     S& skeleton = element.skeleton.emplace<S>();
@@ -326,15 +337,9 @@ void read_element(const Node& node, Element& element) {
 
 void read(const Node& node, Element& element) {
     node.must_be(JsonKind::object, "an object with a shape");
-    const Node shape = node.required("shape", element_format);
-    if (shape.value.kind() == JsonKind::text) {
-        for (std::size_t i = 0; i < shape_words.size(); ++i) {
-            if (!shape.value.is_text(shape_words[i])) continue;
-            return with_shape(static_cast<Shape>(i),
-                              [&]<class S>() { read_element<S>(node, element); });
-        }
-    }
-    throw shape.wrong_kind(listed(shape_words, "or"));
+    const auto shape =
+        static_cast<Shape>(one_of(node.required("shape", element_format), shape_words));
+    with_shape(shape, [&]<class S>() { read_element<S>(node, element); });
 }
 
 void read(const Node& node, Scene& scene) {

@@ -6,6 +6,7 @@
 #include <clocale>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <string>
 #include <string_view>
@@ -29,10 +30,16 @@ std::string fault_of(std::string_view text) {
     return error_line([&] { static_cast<void>(parse(text)); });
 }
 
+// Of a number that ends the text or nearly, and of one that does not.
 double number(const std::string& text) {
-    const std::string list = "[" + text + "]";
+    const JsonDocument alone = parse(text);
+    const std::string list = "[" + text + "          ]";
     const JsonDocument document = parse(list);
-    return (*document.root().items().begin()).number();
+    const double value = (*document.root().items().begin()).number();
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(alone.root().number()),
+              std::bit_cast<std::uint64_t>(value))
+        << text;
+    return value;
 }
 
 TEST(JsonReader, KeepsEveryKindOfValue) {
@@ -69,8 +76,8 @@ TEST(JsonReader, TextIsWhatItsEscapesStandFor) {
     EXPECT_EQ(items[0].text(), "\"\\/\b\f\n\r\t");
     EXPECT_EQ(items[1].text(), std::string("aAé€🦣\0z", 13));
     EXPECT_EQ(items[2].text(), "\\u0041");
-    EXPECT_TRUE(items[2].is_text("\\u0041"));
-    EXPECT_FALSE(items[2].is_text("A"));
+    EXPECT_TRUE(parse(R"("\u0041")").root().is_word("A"));
+    EXPECT_FALSE(items[2].is_word("A"));
 }
 
 TEST(JsonReader, NumbersAreTheNearestDoubles) {
@@ -91,6 +98,27 @@ TEST(JsonReader, NumbersAreTheNearestDoubles) {
     EXPECT_EQ(number("2.4703282292062327e-324"), 0.0);  // below half the least
     EXPECT_EQ(number("2.4703282292062328e-324"), 5e-324);
     EXPECT_EQ(number("1e-999"), 0.0);
+}
+
+// Of any number of digits before and behind the point, with and without an exponent.
+TEST(JsonReader, NumbersAreThoseOfTheCLibrary) {
+    const auto seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto digits = [&](std::size_t count) {
+        std::string text;
+        while (text.size() < count) text += static_cast<char>('0' + random() % 10);
+        return text;
+    };
+    for (std::size_t i = 0; i < 50'000; ++i) {
+        std::string text = i % 2 == 0 ? "-" : "";
+        text += i % 3 == 0 ? "0" : "1" + digits(random() % 20);
+        if (i % 7 != 0) text += "." + digits(1 + random() % 20);
+        if (i % 11 == 0) text += "e-" + digits(1 + random() % 2);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(number(text)),
+                  std::bit_cast<std::uint64_t>(std::strtod(text.c_str(), nullptr)))
+            << text;
+    }
 }
 
 TEST(JsonReader, KeepsTheSignOfZero) {
@@ -157,6 +185,19 @@ TEST(JsonReader, RefusesDuplicateKeysAtEveryLevel) {
     EXPECT_EQ(fault_of(R"({"a": 1, "a": nonsense)"),
               "x: /a (line 1, column 10): the key \"a\"" + remedy);
     EXPECT_NO_THROW(static_cast<void>(parse(R"([{"a": {"a": 1}}, {"a": 2}])")));
+    // Among few and many keys, with escapes and without.
+    for (const int others : {0, 1, 14, 15, 16, 17, 31, 32, 33, 64, 100}) {
+        for (const std::string first : {"a", "\\u0061"}) {
+            for (const std::string second : {"a", "\\u0061"}) {
+                std::string text = "{\"" + first + "\":0,";
+                for (int i = 0; i < others; ++i) text += "\"" + std::to_string(i) + "\":0,";
+                EXPECT_NO_THROW(static_cast<void>(parse(text + "\"b\":0}")));
+                EXPECT_EQ(fault_of(text + "\"" + second + "\":0}"),
+                          "x: /a (line 1, column " + std::to_string(1 + text.size()) +
+                              "): the key \"a\"" + remedy);
+            }
+        }
+    }
 }
 
 TEST(JsonReader, SaysWhereANumberIsTooLarge) {
