@@ -1,6 +1,7 @@
 #include "core/scene/json_text.h"
 
 #include <array>
+#include <bit>
 #include <cfloat>
 #include <charconv>
 #include <limits>
@@ -88,7 +89,9 @@ std::optional<double> quotient_at(std::string_view text) {
     if (*all.end == 'e' || *all.end == 'E') return std::nullopt;
     const double value = static_cast<double>(all.number) /
                          powers_of_ten[static_cast<std::size_t>(all.count - whole.count)];
-    return negative ? -value : value;
+    // No branch: signs have no order.
+    const std::uint64_t sign = std::uint64_t{negative} << 63;
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) | sign);
 }
 
 }  // namespace
