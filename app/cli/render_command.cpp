@@ -64,6 +64,7 @@ struct Rendering {
     // Of samples all of which are traced, the larger picture's.
     std::unique_ptr<Canvas> canvas;
     std::unique_ptr<SampledPicture> sampled;  // of several samples a pixel
+    std::unique_ptr<GrowingPng> png;          // packed while it is painted: see `grows_png`
     JobReport report;
 
     [[nodiscard]] const Rgba8* color() const {
@@ -78,7 +79,8 @@ struct Rendering {
 // A picture from its scene, of one eye or two, with what it took.
 struct Run {
     std::vector<Rendering> eyes;
-    Seconds seconds;  // compile, trace, shade and total
+    // compile, trace, shade and their total; write: what was packed meanwhile
+    Seconds seconds;
 };
 
 // What --answers writes is of the larger picture: all of it is traced.
@@ -86,8 +88,14 @@ bool traces_larger(const RenderArguments& arguments) {
     return arguments.samples_a_side > 1 && !arguments.answers.empty();
 }
 
-// On the canvases of the rendering before, where there are any.
-void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
+// What is painted is what is written.
+bool grows_png(const RenderArguments& arguments) {
+    return !arguments.picture.empty() && arguments.stereo == Stereo::none &&
+           !traces_larger(arguments);
+}
+
+// On the canvases of the rendering before, where there are any. `last`: its picture is written.
+void render_eye(Rendering& eye, const RenderArguments& arguments, Task task, bool last,
                 const std::string& label, Progress& progress) {
     const int times = traces_larger(arguments) ? arguments.samples_a_side : 1;
     if (!eye.canvas) {
@@ -105,6 +113,13 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
         }
         settings.task = Task::sample;
         settings.sampled = eye.sampled.get();
+    }
+    if (last && grows_png(arguments)) {
+        eye.png = std::make_unique<GrowingPng>(
+            PictureBytes{arguments.width, arguments.height, eye.color()});
+        settings.on_tile = [png = eye.png.get()](const TileNotice& notice) {
+            png->painted(notice.rect);
+        };
     }
     FrameJob job(eye.picture, *eye.canvas, settings);
     // One thread works here itself, and a tile may take long.
@@ -126,7 +141,7 @@ void render_eye(Rendering& eye, const RenderArguments& arguments, Task task,
     }
 }
 
-Run render_once(const Scene& scene, const RenderArguments& arguments, Task task,
+Run render_once(const Scene& scene, const RenderArguments& arguments, Task task, bool last,
                 std::vector<Rendering> eyes, const std::string& label, Progress& progress) {
     const Clock::time_point start = Clock::now();
     Run run{std::move(eyes), {}};
@@ -150,17 +165,21 @@ Run render_once(const Scene& scene, const RenderArguments& arguments, Task task,
         const Clock::time_point compiled = Clock::now();
         const std::string eye_label =
             run.eyes.size() == 1 ? label : label + (k == 0 ? "left eye: " : "right eye: ");
-        render_eye(run.eyes[k], arguments, task, eye_label, progress);
+        render_eye(run.eyes[k], arguments, task, last, eye_label, progress);
         const double worked = seconds_since(compiled);
         const double shading = worked * run.eyes[k].report.shade_share;
+        const double packing =
+            run.eyes[k].png ? run.eyes[k].png->seconds() / arguments.work.threads : 0;
         run.seconds.shade += shading;
-        run.seconds.trace += worked - shading;
+        run.seconds.trace += std::max(worked - shading - packing, 0.0);
+        run.seconds.write += packing;
     }
-    run.seconds.total = seconds_since(start);
+    run.seconds.total = seconds_since(start) - run.seconds.write;
     return run;
 }
 
 std::string picture_bytes(const Run& run, const RenderArguments& arguments) {
+    if (run.eyes[0].png) return run.eyes[0].png->bytes();
     const int width = arguments.width, height = arguments.height;
     const Rgba8* const left = run.eyes[0].color();
     switch (arguments.stereo) {
@@ -254,7 +273,8 @@ void run(const RenderArguments& arguments) {
                 ? ""
                 : std::to_string(number) + "/" + std::to_string(arguments.repeat) + ": ";
         stop_if_interrupted();  // a picture may be done before it is looked for again
-        run = render_once(scene, arguments, task, std::move(run.eyes), label, progress);
+        run = render_once(scene, arguments, task, number == arguments.repeat, std::move(run.eyes),
+                          label, progress);
         runs.push_back(run.seconds);
     }
 
@@ -275,7 +295,7 @@ void run(const RenderArguments& arguments) {
     statistics.samples = arguments.samples_a_side * arguments.samples_a_side;
     statistics.seconds = medians_of(runs);
     statistics.seconds.load = load_seconds;
-    statistics.seconds.write = seconds_since(rendered);
+    statistics.seconds.write = run.seconds.write + seconds_since(rendered);
     statistics.seconds.total += load_seconds + statistics.seconds.write;
     statistics.repeats = arguments.repeat;
     statistics.elements = scene.elements.size();

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <sstream>
+#include <thread>
 #include <vector>
 
 namespace ivory {
@@ -44,6 +48,39 @@ TEST(ImageFile, APngReadsBackToTheSameBytes) {
             ASSERT_EQ(pixels[3 * p], frame.color[p].r);
             ASSERT_EQ(pixels[3 * p + 1], frame.color[p].g);
             ASSERT_EQ(pixels[3 * p + 2], frame.color[p].b);
+        }
+    }
+}
+
+// By several threads, tiles in any order, and where some are not told.
+TEST(ImageFile, APictureThatIsPackedWhileItIsPaintedHasTheSameBytes) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {37, 64}, {37, 65}, {640, 360}}) {
+        const Frame frame = noise(width, height);
+        const std::string expected = png_bytes(frame);
+        const Squares tiles = TileGrid(width, height).tiles;
+        std::vector<std::size_t> order(tiles.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::shuffle(order.begin(), order.end(), std::mt19937(3));
+        for (const std::size_t told : {tiles.size(), tiles.size() / 2, std::size_t{0}}) {
+            Frame painted(width, height, false);
+            GrowingPng png(PictureBytes{width, height, &painted.color[0]});
+            std::atomic<std::size_t> next{0};
+            const auto paint = [&] {
+                for (std::size_t k = next++; k < order.size(); k = next++) {
+                    const PixelRect rect = tiles.rect(order[k]);
+                    for (int j = rect.y0; j < rect.y1; ++j) {
+                        for (int i = rect.x0; i < rect.x1; ++i) {
+                            painted.color[painted.at(i, j)] = frame.color[frame.at(i, j)];
+                        }
+                    }
+                    if (k < told) png.painted(rect);
+                }
+            };
+            {
+                const std::jthread other(paint);
+                paint();
+            }
+            EXPECT_TRUE(png.bytes() == expected) << width << "x" << height << ", " << told;
         }
     }
 }
