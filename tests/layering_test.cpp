@@ -197,6 +197,19 @@ TEST(Layering, HeadersOfCoreNeedOnlyTheStandardLibrary) {
     EXPECT_EQ(joined(foreign_headers_in_core(source_tree())), "");
 }
 
+// from_core.cpp, the tests and what they are made of know both.
+TEST(Layering, TheRefereeHasNothingOfCoreButTheTypeOfThreeCoordinates) {
+    for (const std::string& path : files_under("tests/reference")) {
+        if (!is_header(path) && !is_source(path)) continue;
+        if (path.ends_with("_test.cpp") || path.ends_with("/from_core.cpp")) continue;
+        std::ifstream text(root() / path);
+        for (const Include& include : includes_in(text)) {
+            if (!include.quoted || include.path == "core/math/vec3.h") continue;
+            EXPECT_TRUE(include.path.starts_with("tests/reference/")) << path << include.path;
+        }
+    }
+}
+
 TEST(Layering, IncludesHaveNoCycle) { EXPECT_EQ(joined(include_cycles(source_tree())), ""); }
 
 // A source that is not listed is never built; a header of core that is not listed is not installed.

@@ -1,5 +1,5 @@
 // The field of one element along a ray, straight from the formulas of the scene format, for any
-// type of interval: RealInterval (256 bits) and OutwardDouble. With q = distance / width, s = q^2:
+// type of interval: RealInterval (256 bits or more) and OutwardDouble. With q = distance / width, s = q^2:
 // F = b k(s), dF/dt = b k'(s) ds/dt.
 //
 // Every k falls with s and every k' rises with s (that is, k is convex) on s >= 0:
@@ -23,9 +23,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/trace/ray.h"
 #include "tests/reference/from_core.h"
 #include "tests/reference/nearest.h"
+#include "tests/reference/ray.h"
 #include "tests/reference/scene.h"
 #include "tests/reference/triple.h"
 
@@ -34,7 +34,7 @@ namespace ivory::reference {
 // k and k' for s in the given interval; s < 0 stands for rounding below 0.
 template <class I>
 Germ<I> kernel_germ(Kernel kind, const I& s) {
-    static const I one(1), ninth = I(1) / I(9), two_ninths = I(2) / I(9), four_ninths = I(4) / I(9);
+    const I one(1);
     if (kind == Kernel::blinn) {
         const I e = exp(-s);
         return {e, -e};
@@ -45,8 +45,8 @@ Germ<I> kernel_germ(Kernel kind, const I& s) {
     const I inside = common(s, from_to(I(-1), one));
     if (kind == Kernel::wyvill) {
         const I rest = one - inside;
-        const Germ<I> germ{sqr(rest) * (one - four_ninths * inside),
-                           -(two_ninths * rest) * (I(11) - I(6) * inside)};
+        const Germ<I> germ{sqr(rest) * (one - I(4) / I(9) * inside),
+                           -(I(2) / I(9) * rest) * (I(11) - I(6) * inside)};
         return reaches_beyond ? either(germ, beyond) : germ;
     }
     if (kind == Kernel::murakami || kind == Kernel::blobtree) {
@@ -56,6 +56,7 @@ Germ<I> kernel_germ(Kernel kind, const I& s) {
                                  : Germ<I>{rest * sqr(rest), I(-3) * sqr(rest)};
         return reaches_beyond ? either(germ, beyond) : germ;
     }
+    const I ninth = one / I(9);
     const bool reaches_core = !(inside.lo > ninth.hi), reaches_rim = !(inside.hi < ninth.lo);
     Germ<I> germ;
     if (reaches_rim) {
@@ -468,8 +469,10 @@ class BodyAlongRay {
 
 // An element made ready for any number of rays.
 struct ReadyElement {
-    explicit ReadyElement(Element e) : element(std::move(e)), bodies(bodies_of(element)) {}
+    explicit ReadyElement(Element e)
+        : element(std::move(e)), strength(element.strength), bodies(bodies_of(element)) {}
     Element element;
+    RealInterval strength;  // the element's, or the sum of several that are alike but for it
     std::shared_ptr<const Bodies> bodies;
 };
 
@@ -479,7 +482,7 @@ class ElementAlongRay {
   public:
     ElementAlongRay(const ReadyElement& ready, const Ray& ray, long exponent)
         : kernel_(ready.element.kernel),
-          strength_(ready.element.strength),
+          strength_(strength_of(ready)),
           s_(along(ready, triple<I>(ray.origin), triple<I>(ray.direction, exponent))) {}
 
     ElementAlongRay(const ivory::Element& element, const Ray& ray, long exponent)
@@ -503,6 +506,14 @@ class ElementAlongRay {
   private:
     using Shape = std::variant<PointAlongRay<I>, SegmentAlongRay<I>, CircleAlongRay<I>,
                                DiscAlongRay<I>, BodyAlongRay<I>>;
+
+    static I strength_of(const ReadyElement& ready) {
+        if constexpr (std::is_same_v<I, OutwardDouble>) {
+            return OutwardDouble(ready.strength);
+        } else {
+            return ready.strength;
+        }
+    }
 
     static Shape along(const ReadyElement& ready, const Triple<I>& o, const Triple<I>& d) {
         const Element& element = ready.element;

@@ -6,6 +6,11 @@
 #include <string_view>
 #include <variant>
 
+#include "core/scene/scene.h"
+#include "core/trace/ray.h"
+#include "tests/reference/reference.h"
+#include "tests/reference/verdict.h"
+
 namespace ivory::reference {
 
 namespace {
@@ -73,6 +78,32 @@ ReferenceScene from_core(const Scene& scene) {
         result.elements.push_back(from_core(element));
     }
     return result;
+}
+
+Claim from_core(const Answer& answer) {
+    const auto status = [&] {
+        switch (answer.isolation.status) {
+            case Status::hit:
+                return Claim::Status::hit;
+            case Status::miss:
+                return Claim::Status::miss;
+            case Status::unresolved:
+                return Claim::Status::unresolved;
+            case Status::claimed_hit:
+                return Claim::Status::claimed_hit;
+            case Status::claimed_miss:
+                return Claim::Status::claimed_miss;
+        }
+        throw std::logic_error("the reference does not know the status");
+    };
+    return {status(), answer.isolation.t.lo, answer.isolation.t.hi, answer.surface.normal,
+            answer.surface.color};
+}
+
+ReferenceField::ReferenceField(const Scene& scene) : ReferenceField(from_core(scene)) {}
+
+Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, const Answer& answer) {
+    return check(field, ray, tolerance, from_core(answer));
 }
 
 }  // namespace ivory::reference

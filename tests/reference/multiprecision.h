@@ -1,5 +1,6 @@
-// Arithmetic of the reference: binary floating point of 256 bits (GNU MPFR), and closed intervals
-// of it whose ends are rounded outward by MPFR's own directed rounding. Shares nothing with core.
+// Arithmetic of the reference: binary floating point of 256 bits or, where a referee asks for them,
+// more (GNU MPFR), and closed intervals of it whose ends are rounded outward by MPFR's own directed
+// rounding. Shares nothing with core.
 #pragma once
 
 #include <mpfr.h>
@@ -10,24 +11,36 @@
 
 namespace ivory::reference {
 
-// Bits of every number. Doubles convert exactly; the product of two doubles is exact.
-#ifdef IVORY_REFERENCE_BITS
-inline constexpr mpfr_prec_t precision = IVORY_REFERENCE_BITS;
-#else
-inline constexpr mpfr_prec_t precision = 256;
-#endif
-static_assert(precision >= 256, "the reference promises at least 256 bits");
+// Bits of every number that this thread makes, 256 or more: doubles convert exactly, the product of
+// two doubles is exact.
+inline constexpr long least_bits = 256;
+inline thread_local long working_bits = least_bits;
+
+// More of them while it lives.
+class WithBits {
+  public:
+    explicit WithBits(long bits) : before_(working_bits) { working_bits = bits; }
+    ~WithBits() { working_bits = before_; }
+    WithBits(const WithBits&) = delete;
+    WithBits& operator=(const WithBits&) = delete;
+
+  private:
+    long before_;
+};
+
+// So many of the working bits as `bits` are of 256.
+[[nodiscard]] inline long share_of_bits(long bits) { return working_bits * bits / least_bits; }
 
 // One number. A moved-from Real can only be assigned to or destroyed.
 class Real {
   public:
     Real() : Real(0.0) {}
     Real(double x) {  // exact
-        mpfr_init2(value_, precision);
+        mpfr_init2(value_, working_bits);
         mpfr_set_d(value_, x, MPFR_RNDN);
     }
-    Real(const Real& other) {
-        mpfr_init2(value_, precision);
+    Real(const Real& other) {  // exact, with the other's bits
+        mpfr_init2(value_, mpfr_get_prec(other.value_));
         mpfr_set(value_, other.value_, MPFR_RNDN);
     }
     Real(Real&& other) noexcept {

@@ -124,7 +124,7 @@ class Feet {
     std::vector<Place> places_;
 };
 
-// What is known beforehand, from doubles, of the feet in 256 bits.
+// What is known beforehand, from doubles, of the feet in more bits.
 struct Cover {
     std::vector<Place> places;
     std::optional<bool> inside;  // of a polygon
@@ -400,8 +400,13 @@ struct Part {
 // C(n,i) C(m,j) / C(n+m,i+j), for n and m up to 3.
 template <class I>
 const I& product_weight(std::size_t n, std::size_t m, std::size_t i, std::size_t j) {
-    static const auto table = [] {
+    struct Table {
+        long bits = 0;
         std::array<std::array<std::array<std::array<I, 4>, 4>, 4>, 4> all;
+    };
+    static thread_local Table table;
+    if (table.bits != working_bits) {
+        auto& all = table.all;
         for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = 0; b < 4; ++b) {
                 for (std::size_t k = 0; k <= a; ++k) {
@@ -412,9 +417,9 @@ const I& product_weight(std::size_t n, std::size_t m, std::size_t i, std::size_t
                 }
             }
         }
-        return all;
-    }();
-    return table[n][m][i][j];
+        table.bits = working_bits;
+    }
+    return table.all[n][m][i][j];
 }
 
 // The Bernstein coefficients of a.b, of degrees n and m.
@@ -445,8 +450,8 @@ void square(const std::array<Triple<I>, 4>& a, std::size_t n, std::array<I, size
 template <class I>
 void feet_on(Part<I> whole, std::size_t n, std::size_t piece, Feet<I>& feet) {
     constexpr bool doubles = std::is_same_v<I, OutwardDouble>;
-    const I little(doubles ? 0x1p-44 : 0x1p-200);
-    const int most_halvings = doubles ? 36 : 220;
+    const I little = I::of(1, doubles ? -44 : -share_of_bits(200));
+    const int most_halvings = doubles ? 36 : static_cast<int>(share_of_bits(220));
     const std::size_t degree = 2 * n - 1;  // of psi
     std::vector<Part<I>> open;
     open.push_back(std::move(whole));
@@ -608,7 +613,7 @@ void find_feet(const Arc<I>& arc, const Triple<I>& x, const Cover* cover, Feet<I
     }
 }
 
-// A skeleton made ready, in 256 bits and in doubles. Immutable.
+// A skeleton made ready, with the bits at work then and in doubles. Immutable.
 template <class I>
 using Body = std::variant<Chain<I>, Filled<I>, Arc<I>>;
 struct Bodies {
@@ -627,7 +632,7 @@ inline Feet<OutwardDouble> feet_of(const Bodies& bodies, const Triple<OutwardDou
     feet.drop_the_beaten();
     return feet;
 }
-// In 256 bits only where doubles leave it open.
+// In more bits only where doubles leave it open.
 inline Feet<RealInterval> feet_of(const Bodies& bodies, const Triple<RealInterval>& x) {
     const Triple<OutwardDouble> near = rough(x);
     Cover cover;

@@ -29,12 +29,12 @@ class FieldAlongRay {
           ray_(ray),
           exponent_(exponent),
           threshold_(threshold),
-          prepared_(field.elements().size()) {}
+          prepared_(field.joint().size()) {}
 
     Germ<I> element(std::size_t i, const I& t) {
         auto& prepared = prepared_[i];
         if (!prepared) {
-            prepared = std::make_unique<ElementAlongRay<I>>(field_.ready()[i], ray_, exponent_);
+            prepared = std::make_unique<ElementAlongRay<I>>(field_.joint()[i], ray_, exponent_);
         }
         return prepared->over(t);
     }
@@ -87,7 +87,7 @@ Real inside(const Real& a, const Real& b) {
     return rounded(mpfr_add, MPFR_RNDN, a, part);
 }
 
-// The search from the left, first in doubles, then, for what they leave open, in 256 bits.
+// The search from the left, first in doubles, then, for what they leave open, in the field's bits.
 class Search {
   public:
     Search(const ReferenceField& field, const Ray& ray, double threshold_scale)
@@ -105,13 +105,13 @@ class Search {
 
     ReferenceAnswer run() {
         Active<OutwardDouble> all;
-        for (std::size_t i = 0; i < field_.elements().size(); ++i) all.elements.push_back(i);
+        for (std::size_t i = 0; i < field_.joint().size(); ++i) all.elements.push_back(i);
         const std::optional<OutwardDouble> range = reach<OutwardDouble>();
         if (!range) return {Outcome::miss, {}};
         ReferenceAnswer answer;
         if (range->hi <= 1e300) {
             answer = search_rough(range->lo, range->hi, std::move(all));
-        } else {  // beyond the doubles: 256 bits all the way
+        } else {  // beyond the doubles: the field's bits all the way
             const std::optional<RealInterval> wide = reach<RealInterval>();
             if (!wide) return {Outcome::miss, {}};
             answer = search_exact(wide->lo, wide->hi, exactly(all));
@@ -134,12 +134,13 @@ class Search {
     template <class I>
     std::optional<I> reach() const {
         double positive = 0;
-        for (const Element& element : field_.elements()) positive += element.strength > 0 ? 1 : 0;
+        for (const ReadyElement& ready : field_.joint()) positive += ready.element.strength > 0;
         const double threshold = OutwardDouble(exact_threshold_).lo;
         const Triple<I> o = triple<I>(ray_.origin), d = triple<I>(ray_.direction, exponent_);
         const I d2 = norm2(d), length = sqrt(d2);
         std::optional<I> range;
-        for (const Element& element : field_.elements()) {
+        for (const ReadyElement& ready : field_.joint()) {
+            const Element& element = ready.element;
             if (element.strength <= 0) continue;
             double q = 1;
             if (element.kernel == Kernel::blinn) {
@@ -185,10 +186,11 @@ class Search {
         return {center, std::visit(Radius{around}, skeleton)};
     }
 
-    // As FieldAlongRay::over; `shorter` gets the elements that add less than 1e-60 T to f here.
+    // As FieldAlongRay::over; `shorter` gets the elements that add less than 2^-200 T (256 bits) to f
+    // here.
     Germ<OutwardDouble> over(const OutwardDouble& t, const Active<OutwardDouble>& active,
                              Active<OutwardDouble>& shorter) {
-        const double little = 1e-60 * field_.threshold();
+        const double little = std::ldexp(field_.threshold(), -static_cast<int>(share_of_bits(200)));
         Germ<OutwardDouble> sum{active.rest.value - OutwardDouble(exact_threshold_),
                                 active.rest.slope};
         shorter.rest = active.rest;
@@ -208,7 +210,7 @@ class Search {
 
     // In doubles; `lo` to `hi` of scaled t. An interval is dropped where f is certainly not 0: by
     // its enclosure, by its mean value form, or since f is monotone and its ends have one sign.
-    // Where doubles see a root or nothing at all, the 256 bits are asked.
+    // Where doubles see a root or nothing at all, more bits are asked.
     ReferenceAnswer search_rough(double lo, double hi, Active<OutwardDouble> all) {
         struct Part {
             double lo, hi;
@@ -274,7 +276,7 @@ class Search {
         return common(OutwardDouble::around(t.lo, t.hi), whole);
     }
 
-    // In 256 bits, likewise, and with interval Newton steps N = m - f(m) / f'([t]): all roots of
+    // In the field's bits, likewise, and with interval Newton steps N = m - f(m) / f'([t]): all roots of
     // [t] lie in N, and if N lies in [t] there is one (f is Lipschitz, f' holds the slopes of both
     // sides of a kink, so that the mean value theorem stands).
     ReferenceAnswer search_exact(const Real& lo, const Real& hi,
@@ -305,13 +307,13 @@ class Search {
                     return {Outcome::hit, polish(newton, active)};
                 }
                 const RealInterval rest = common(newton, t);
-                if (narrow(rest, 1e-40)) return {Outcome::unknown, rest};
+                if (narrow(rest, 133)) return {Outcome::unknown, rest};
                 if (much_narrower(rest, t)) {
                     open.push_back(rest);
                     continue;
                 }
             }
-            if (narrow(t, certainly_not_zero(at_middle) ? 1e-34 : 1e-20)) {
+            if (narrow(t, certainly_not_zero(at_middle) ? 113 : 66)) {
                 return {Outcome::unknown, t};
             }
             open.push_back(RealInterval(middle, t.hi));
@@ -322,7 +324,7 @@ class Search {
 
     // t holds exactly one root, and f is monotone on it.
     RealInterval polish(RealInterval t, const Active<RealInterval>& active) {
-        for (int count = 0; count < 300 && !narrow(t, 1e-34); ++count) {
+        for (int count = 0; count < share_of_bits(300) && !narrow(t, 113); ++count) {
             const Real middle = inside(t.lo, t.hi);
             const RealInterval value = exact_.over(RealInterval(middle), active).value;
             const RealInterval slope = exact_.over(t, active).slope;
@@ -334,9 +336,10 @@ class Search {
         return t;
     }
 
-    bool narrow(const RealInterval& t, double relative) const {
+    // Of so many of 256 bits: 2^-113 is some 1e-34, 2^-66 some 1e-20.
+    bool narrow(const RealInterval& t, long bits) const {
         const Real size = rounded(mpfr_add, MPFR_RNDN, t.hi, Real(least_width_));
-        return t.width() <= rounded(mpfr_mul, MPFR_RNDN, size, Real(relative));
+        return t.width() <= scaled(size, -share_of_bits(bits));
     }
     static bool much_narrower(const RealInterval& part, const RealInterval& whole) {
         return part.width() <= rounded(mpfr_mul, MPFR_RNDN, whole.width(), Real(0.75));
@@ -354,21 +357,44 @@ class Search {
 }  // namespace
 
 ReferenceAnswer first_root(const ReferenceField& field, const Ray& ray, double threshold_scale) {
+    const WithBits with_bits(field.bits());
     return Search(field, ray, threshold_scale).run();
 }
 
-ReferenceField::ReferenceField(const ReferenceScene& scene) : threshold_(scene.threshold) {
+ReferenceField::ReferenceField(const ReferenceScene& scene, long bits)
+    : bits_(bits), threshold_(scene.threshold) {
+    const WithBits with_bits(bits_);
     for (const Element& element : scene.elements) {
         if (!element.visible) continue;
         elements_.push_back(element);
         ready_.emplace_back(element);
     }
+    join();
 }
 
-ReferenceField::ReferenceField(const Scene& scene) : ReferenceField(from_core(scene)) {}
+// No sum of doubles needs more bits than all of their exponents and a few.
+void ReferenceField::join() {
+    const auto alike = [](const Element& a, const Element& b) {
+        return a.kernel == b.kernel && a.width == b.width && a.widths == b.widths &&
+               a.skeleton == b.skeleton;
+    };
+    const WithBits all_bits(std::max(bits_, 2200L));
+    for (const ReadyElement& ready : ready_) {
+        const auto known = std::find_if(
+            joint_.begin(), joint_.end(),
+            [&](const ReadyElement& other) { return alike(other.element, ready.element); });
+        if (known == joint_.end()) {
+            joint_.push_back(ready);
+        } else {
+            known->strength = known->strength + ready.strength;
+        }
+    }
+    for (ReadyElement& one : joint_) one.element.strength = one.strength.hi.to_double(MPFR_RNDU);
+}
 
 Germ<RealInterval> ReferenceField::along(const Ray& ray, const RealInterval& t,
                                          double threshold_scale) const {
+    const WithBits with_bits(bits_);
     Germ<RealInterval> sum{-(RealInterval(threshold_) * RealInterval(threshold_scale)), 0.0};
     for (const ReadyElement& element : ready_) {
         FieldAlongRay<RealInterval>::add(sum,
@@ -516,6 +542,7 @@ double greatest(const OutwardDouble& x) { return std::max(std::fabs(x.lo), std::
 PointValue ReferenceField::at(const Ray& ray, const Real& t) const {
     using Exact = RealInterval;
     using Rough = OutwardDouble;
+    const WithBits with_bits(bits_);
     Triple<Exact> p = triple<Exact>(ray.origin);
     const Triple<Exact> d = triple<Exact>(ray.direction);
     for (std::size_t k = 0; k < 3; ++k) p[k] = p[k] + Exact(t) * d[k];
@@ -532,7 +559,7 @@ PointValue ReferenceField::at(const Ray& ray, const Real& t) const {
         for (const Rough& slope : rough.slope) {
             size = std::max(size, greatest(slope) * element.width);
         }
-        if (size < 1e-40 * threshold_) {  // too little to be worth 256 bits
+        if (size < 1e-40 * threshold_) {  // too little to be worth many bits
             germ = {exactly(rough.value),
                     {exactly(rough.slope[0]), exactly(rough.slope[1]), exactly(rough.slope[2])}};
         } else {

@@ -1,13 +1,13 @@
-// The reference: exact field and first root of a scene along a ray, in intervals of 256 bits.
-// Formulas: the scene format; nothing numerical is shared with core.
+// The reference: exact field and first root of a scene along a ray, in intervals of 256 bits or more.
+// Formulas: the scene format; nothing is shared with core but the type of three coordinates.
 #pragma once
 
 #include <vector>
 
-#include "core/scene/scene.h"
-#include "core/trace/ray.h"
 #include "tests/reference/along_ray.h"
+#include "tests/reference/from_core.h"
 #include "tests/reference/multiprecision.h"
+#include "tests/reference/ray.h"
 #include "tests/reference/scene.h"
 
 namespace ivory::reference {
@@ -27,12 +27,16 @@ struct PointValue {
 // The elements of a scene that are part of its field. Immutable; shared between threads freely.
 class ReferenceField {
   public:
-    explicit ReferenceField(const ReferenceScene& scene);
-    explicit ReferenceField(const Scene& scene);
+    explicit ReferenceField(const ReferenceScene& scene, long bits = least_bits);
+    explicit ReferenceField(const Scene& scene);  // core's: from_core.cpp
 
+    [[nodiscard]] long bits() const { return bits_; }  // of whatever is asked of it
     [[nodiscard]] double threshold() const { return threshold_; }
     [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }  // visible
     [[nodiscard]] const std::vector<ReadyElement>& ready() const { return ready_; }   // the same
+    // Those that have all but strength and colour in common as one: a wide interval of t would not
+    // tell what is left of strengths that cancel.
+    [[nodiscard]] const std::vector<ReadyElement>& joint() const { return joint_; }
 
     // At o + t d, t a point.
     [[nodiscard]] PointValue at(const Ray& ray, const Real& t) const;
@@ -42,13 +46,16 @@ class ReferenceField {
                                            double threshold_scale = 1) const;
 
   private:
+    void join();
+
+    long bits_;
     double threshold_;
     std::vector<Element> elements_;
-    std::vector<ReadyElement> ready_;
+    std::vector<ReadyElement> ready_, joint_;
 };
 
 enum class Outcome {
-    hit,      // t encloses the first root t >= 0, to some 1e-30 of its size or better
+    hit,      // t encloses the first root t >= 0, to some 1e-30 of its size (256 bits) or better
     miss,     // no root t >= 0
     unknown,  // no root before t.lo; whether t holds one cannot be told with this precision
 };

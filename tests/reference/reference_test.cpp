@@ -265,7 +265,7 @@ TEST(FirstRoot, AgreesWithSampling) {
         recipe.critical = seed % 4 == 3;
         const Scene scene = tools::random_scene(recipe, seed);
         const ReferenceField field(scene);
-        for (const Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 5, seed)) {
+        for (const ivory::Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 5, seed)) {
             const ReferenceAnswer answer = first_root(field, ray);
             ASSERT_NE(answer.outcome, Outcome::unknown) << "seed " << seed;
             answer.outcome == Outcome::hit ? ++hits : ++misses;
@@ -298,7 +298,7 @@ TEST(FirstRoot, IsARootOfTheWholeFieldOfManyElements) {
     const Scene scene = tools::random_scene(recipe, 5);
     const ReferenceField field(scene);
     int hits = 0;
-    for (const Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 16, 5)) {
+    for (const ivory::Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 16, 5)) {
         const ReferenceAnswer answer = first_root(field, ray);
         if (answer.outcome != Outcome::hit) continue;
         ++hits;
@@ -316,7 +316,7 @@ TEST(ReferenceField, AlongTheRayAndInSpaceAgree) {
         recipe.elements = 6;
         const Scene scene = tools::random_scene(recipe, seed);
         const ReferenceField field(scene);
-        for (const Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 20, seed)) {
+        for (const ivory::Ray& ray : tools::nasty_rays(scene, tools::RayKind::random, 20, seed)) {
             const Real t(3.0 / std::hypot(ray.direction.x, ray.direction.y, ray.direction.z));
             const PointValue point = field.at(ray, t);
             const Germ<RealInterval> germ = field.along(ray, RealInterval(t));
@@ -339,7 +339,7 @@ TEST(ReferenceField, IntervalsEncloseTheirPoints) {
         const Scene scene = tools::random_scene(recipe, seed);
         const ReferenceField field(scene);
         for (const tools::RayKind kind : {tools::RayKind::random, tools::RayKind::axis}) {
-            for (const Ray& ray : tools::nasty_rays(scene, kind, 12, seed)) {
+            for (const ivory::Ray& ray : tools::nasty_rays(scene, kind, 12, seed)) {
                 const double unit =
                     1 / std::hypot(ray.direction.x, ray.direction.y, ray.direction.z);
                 tools::Random random(seed);
@@ -444,7 +444,7 @@ TEST(NastyRays, AreRaysAtExtremeScales) {
         const Scene scene = tools::random_scene(recipe, 5);
         std::size_t count = 0;
         for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
-            for (const Ray& ray :
+            for (const ivory::Ray& ray :
                  tools::nasty_rays(scene, static_cast<tools::RayKind>(kind), 20, 9)) {
                 ++count;
                 double sum = 0;
@@ -470,7 +470,8 @@ TEST(FirstRoot, IsKnownForNastyRays) {
         const Scene scene = tools::random_scene(recipe, seed);
         const ReferenceField field(scene);
         for (std::size_t kind = 0; kind < tools::ray_kind_words.size(); ++kind) {
-            for (const Ray& ray : nasty_rays(scene, static_cast<tools::RayKind>(kind), 24, seed)) {
+            for (const ivory::Ray& ray :
+                 nasty_rays(scene, static_cast<tools::RayKind>(kind), 24, seed)) {
                 ++all;
                 unknown += first_root(field, ray).outcome == Outcome::unknown;
             }

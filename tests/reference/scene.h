@@ -13,28 +13,35 @@ namespace ivory::reference {
 
 struct Point {
     Vec3d position;
+    friend bool operator==(const Point&, const Point&) = default;
 };
 struct Segment {
     Vec3d a, b;  // may coincide
+    friend bool operator==(const Segment&, const Segment&) = default;
 };
 struct Circle {
     Vec3d center, normal;
     double radius = 0;
+    friend bool operator==(const Circle&, const Circle&) = default;
 };
 struct Disc {
     Vec3d center, normal;
     double radius = 0;
+    friend bool operator==(const Disc&, const Disc&) = default;
 };
 // Filled, in the plane through the first vertex with the Newell normal; the vertices are projected.
 struct Polygon {
     std::vector<Vec3d> vertices;
+    friend bool operator==(const Polygon&, const Polygon&) = default;
 };
 // A Bezier curve: 3 or 4 points.
 struct Curve {
     std::vector<Vec3d> control_points;
+    friend bool operator==(const Curve&, const Curve&) = default;
 };
 struct Polyline {
     std::vector<Vec3d> points;
+    friend bool operator==(const Polyline&, const Polyline&) = default;
 };
 using Skeleton = std::variant<Point, Segment, Circle, Disc, Polygon, Curve, Polyline>;
 

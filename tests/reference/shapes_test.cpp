@@ -652,7 +652,7 @@ TEST(DegenerateScenes, AreDecided) {
         for (std::uint64_t seed = 1; seed <= 9; seed += 2) {  // every kernel, both signs
             const auto made = degenerate_case(static_cast<tools::Family>(family), seed);
             const ReferenceField field(made.scene);
-            for (const Ray& ray : made.rays) {
+            for (const ivory::Ray& ray : made.rays) {
                 const ReferenceAnswer answer = first_root(field, ray);
                 ++all;
                 hits += answer.outcome == Outcome::hit;

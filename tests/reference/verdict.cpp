@@ -15,8 +15,19 @@ Real magnitude(const RealInterval& x) {
     return lo < hi ? hi : lo;
 }
 
-Real middle_of(const Interval<double>& t) {
-    return scaled(rounded(mpfr_add, MPFR_RNDN, Real(t.lo), Real(t.hi)), -1);  // exact
+bool has_bracket(const Claim& claim) {
+    return claim.status != Claim::Status::miss && claim.status != Claim::Status::claimed_miss;
+}
+// An unresolved bracket may be endless.
+bool is_malformed(const Claim& claim) {
+    if (!has_bracket(claim)) return false;
+    const bool ends = claim.status != Claim::Status::unresolved || !std::isinf(claim.hi);
+    return !(0 <= claim.lo && claim.lo <= claim.hi && std::isfinite(claim.lo)) ||
+           (ends && !std::isfinite(claim.hi));
+}
+
+Real middle_of(const Claim& claim) {
+    return scaled(rounded(mpfr_add, MPFR_RNDN, Real(claim.lo), Real(claim.hi)), -1);  // exact
 }
 
 // The width of the element with the greatest |F_i|: the greater one where two are alike.
@@ -36,18 +47,23 @@ double leading_width(const ReferenceField& field, const PointValue& point) {
 }
 
 // t_hi - t_lo > max(E w / |d|, 16 ulp(t_hi)) for certain.
-bool certainly_too_wide(const Interval<double>& t, double tolerance, double w, const Ray& ray) {
-    const RealInterval width = RealInterval(t.hi) - RealInterval(t.lo);
+bool certainly_too_wide(const ReferenceField& field, const Ray& ray, double tolerance,
+                        const Claim& claim) {
+    const RealInterval width = RealInterval(claim.hi) - RealInterval(claim.lo);
+    const double ulp = std::nextafter(claim.hi, std::numeric_limits<double>::infinity()) - claim.hi;
+    if (width.lo <= scaled(Real(ulp), 4)) return false;
     const RealInterval d = sqrt(norm2(triple<RealInterval>(ray.direction)));
-    const RealInterval allowed = RealInterval(tolerance) * RealInterval(w) / d;
-    const double ulp = std::nextafter(t.hi, std::numeric_limits<double>::infinity()) - t.hi;
-    return width.lo > allowed.hi && width.lo > Real(16 * ulp);
+    const auto allowed = [&](double w) { return RealInterval(tolerance) * RealInterval(w) / d; };
+    double least = std::numeric_limits<double>::infinity();
+    for (const Element& element : field.elements()) least = std::min(least, element.width);
+    if (width.lo <= allowed(least).lo) return false;
+    return width.lo > allowed(leading_width(field, field.at(ray, middle_of(claim)))).hi;
 }
 
 // No root on [0, t.lo), and one on t: true, false, or nothing where that cannot be told.
 std::optional<bool> holds_first_root(const ReferenceField& field, const Ray& ray,
-                                     const Interval<double>& t, const ReferenceAnswer& reference) {
-    const Real lo(t.lo), hi(t.hi);
+                                     const Claim& claim, const ReferenceAnswer& reference) {
+    const Real lo(claim.lo), hi(claim.hi);
     const RealInterval& root = reference.t;
     if (reference.outcome == Outcome::miss) return false;
     if (root.lo > hi) return false;
@@ -90,7 +106,7 @@ double normal_error(const ReferenceField& field, const PointValue& point, double
     return norm(difference);
 }
 
-double color_error(const ReferenceField& field, const PointValue& point, const Color& color) {
+double color_error(const ReferenceField& field, const PointValue& point, const Vec3d& color) {
     double positive = 0;
     for (const RealInterval& value : point.element) positive += std::max(0.0, value.lo.to_double());
     if (positive < field.threshold() / 2) return Verdict::nothing;
@@ -200,80 +216,85 @@ const char* word(Fault fault) {
     return "";
 }
 
-Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, const Answer& answer) {
+Ruling rule(const ReferenceField& field, const Ray& ray, double tolerance, const Claim& claim) {
+    const WithBits with_bits(field.bits());
+    Ruling ruling;
+    if (is_malformed(claim)) {
+        ruling.fault = Fault::malformed;
+        return ruling;
+    }
+    ruling.reference = first_root(field, ray);
+    const ReferenceAnswer& reference = ruling.reference;
+    const bool is_hit = reference.outcome == Outcome::hit;
+    ruling.undecided = reference.outcome == Outcome::unknown;
+    switch (claim.status) {
+        case Claim::Status::miss:
+            if (is_hit) ruling.fault = Fault::wrong_miss;
+            break;
+        case Claim::Status::claimed_miss:
+            if (is_hit) ruling.fault = Fault::false_claim;
+            break;
+        case Claim::Status::claimed_hit:
+            if (reference.outcome == Outcome::miss) ruling.fault = Fault::false_claim;
+            break;
+        case Claim::Status::unresolved: {
+            if (reference.outcome == Outcome::miss) break;
+            if (std::isinf(claim.hi)) {
+                if (is_hit && reference.t.hi < Real(claim.lo)) ruling.fault = Fault::wrong_bracket;
+                break;
+            }
+            const std::optional<bool> right = holds_first_root(field, ray, claim, reference);
+            if (right == false && is_hit) ruling.fault = Fault::wrong_bracket;
+            // Where all that is known is that no root lies in it, there may be none at all.
+            ruling.undecided = !right || (right == false && !is_hit);
+            break;
+        }
+        case Claim::Status::hit: {
+            const std::optional<bool> right = holds_first_root(field, ray, claim, reference);
+            ruling.undecided = !right;
+            if (right == false) {
+                ruling.fault = Fault::wrong_hit;
+            } else if (certainly_too_wide(field, ray, tolerance, claim)) {
+                ruling.fault = Fault::too_wide;
+            }
+            break;
+        }
+    }
+    return ruling;
+}
+
+Verdict check(const ReferenceField& field, const Ray& ray, double tolerance, const Claim& claim) {
+    const WithBits with_bits(field.bits());
     Verdict verdict;
-    const Status status = answer.isolation.status;
-    const Interval<double>& t = answer.isolation.t;
-    const bool has_bracket =
-        status == Status::hit || status == Status::unresolved || status == Status::claimed_hit;
-    const bool endless = status == Status::unresolved && std::isinf(t.hi);
-    if (has_bracket &&
-        !(0 <= t.lo && t.lo <= t.hi && std::isfinite(t.lo) && (std::isfinite(t.hi) || endless))) {
-        verdict.fault = Fault::malformed;
-        return verdict;
-    }
-    verdict.reference = first_root(field, ray);
-    const ReferenceAnswer& reference = verdict.reference;
-    const bool unknown = reference.outcome == Outcome::unknown;
-
-    if (!has_bracket) {
-        verdict.undecided = unknown;
-        if (reference.outcome == Outcome::hit) {
-            verdict.fault = status == Status::miss ? Fault::wrong_miss : Fault::false_claim;
-        }
+    static_cast<Ruling&>(verdict) = rule(field, ray, tolerance, claim);
+    if (verdict.fault == Fault::malformed || !has_bracket(claim)) return verdict;
+    if (std::isinf(claim.hi)) {  // without a middle there is no normal and no colour to judge
+        verdict.bracket = claim.hi;
         return verdict;
     }
 
-    if (endless) {  // without a middle there is no normal and no colour to judge
-        verdict.bracket = t.hi;
-        verdict.undecided = unknown;
-        if (reference.outcome == Outcome::hit && reference.t.hi < Real(t.lo)) {
-            verdict.fault = Fault::wrong_bracket;
-        }
-        return verdict;
-    }
-
-    const Real m = middle_of(t);
+    const Real m = middle_of(claim);
     const PointValue point = field.at(ray, m);
     const double w = leading_width(field, point);
     const RealInterval d = sqrt(norm2(triple<RealInterval>(ray.direction)));
-    const RealInterval span = (RealInterval(t.hi) - RealInterval(t.lo)) * d;
+    const RealInterval span = (RealInterval(claim.hi) - RealInterval(claim.lo)) * d;
     if (w > 0) {
         verdict.bracket = (span / RealInterval(w)).hi.to_double();
-        verdict.normal_error = normal_error(field, point, w, answer.surface.normal);
-        verdict.color_error = color_error(field, point, answer.surface.color);
+        verdict.normal_error = normal_error(field, point, w, claim.normal);
+        verdict.color_error = color_error(field, point, claim.color);
     }
-    if (reference.outcome == Outcome::hit) {
-        verdict.root_error = magnitude((RealInterval(m) - reference.t) * d).to_double();
-    }
-
-    if (status == Status::hit) {
-        const std::optional<bool> right = holds_first_root(field, ray, t, reference);
-        verdict.undecided = !right;
-        if (right == false) {
-            verdict.fault = Fault::wrong_hit;
-        } else if (certainly_too_wide(t, tolerance, w, ray)) {
-            verdict.fault = Fault::too_wide;
-        }
-    } else if (status == Status::claimed_hit) {
-        verdict.undecided = unknown;
-        if (reference.outcome == Outcome::miss) verdict.fault = Fault::false_claim;
-    } else {
-        verdict.undecided = unknown;
-        if (reference.outcome == Outcome::hit &&
-            (reference.t.hi < Real(t.lo) || reference.t.lo > Real(t.hi))) {
-            verdict.fault = Fault::wrong_bracket;
-        }
+    if (verdict.reference.outcome == Outcome::hit) {
+        verdict.root_error = magnitude((RealInterval(m) - verdict.reference.t) * d).to_double();
     }
     return verdict;
 }
 
 bool decidable(const ReferenceField& field, const Ray& ray, double tolerance,
                const ReferenceAnswer& known) {
+    const WithBits with_bits(field.bits());
     if (known.outcome == Outcome::unknown) return false;
     const Nearest near = nearest(field, ray, known);
-    const double shift = 1e-11 * std::max(1.0, near.size / near.width);
-    if (!(shift < 0.5)) return false;
+    const double shift = std::min(1e-11 * std::max(1.0, near.size / near.width), 1e-3);
     const ReferenceAnswer lower = first_root(field, ray, 1 - shift);
     const ReferenceAnswer upper = first_root(field, ray, 1 + shift);
     if (lower.outcome != known.outcome || upper.outcome != known.outcome) return false;

@@ -3,7 +3,8 @@
 
 #include <limits>
 
-#include "core/trace/ray.h"
+#include "tests/reference/claim.h"
+#include "tests/reference/from_core.h"
 #include "tests/reference/reference.h"
 
 namespace ivory::reference {
@@ -20,12 +21,18 @@ enum class Fault {
 
 [[nodiscard]] const char* word(Fault fault);
 
-struct Verdict {
+// Of the status and the bracket alone. Without a fault, and not undecided: proved to be right.
+struct Ruling {
+    Fault fault = Fault::none;
+    bool undecided = false;  // the field's bits do not suffice to judge this answer
+    ReferenceAnswer reference;
+};
+[[nodiscard]] Ruling rule(const ReferenceField& field, const Ray& ray, double tolerance,
+                          const Claim& claim);
+
+struct Verdict : Ruling {
     static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-    Fault fault = Fault::none;
-    bool undecided = false;  // 256 bits do not suffice to judge this answer
-    ReferenceAnswer reference;
     double normal_error = nothing;  // |n - exact n| at m; NaN where not to be judged
     double color_error = nothing;   // greatest of the three differences at m; likewise
     double root_error = nothing;    // |m - root| |d|, a length, where both know a root
@@ -37,9 +44,11 @@ struct Verdict {
 // of |grad F_i|, or below 1e-6 T / w, or within 1e-6 w of where an element that adds to it has a kink. The
 // colour is judged where the positive F_i sum to T / 2 or more.
 [[nodiscard]] Verdict check(const ReferenceField& field, const Ray& ray, double tolerance,
-                            const Answer& answer);
+                            const Claim& claim);
+[[nodiscard]] Verdict check(const ReferenceField& field, const Ray& ray, double tolerance,
+                            const Answer& answer);  // core's: from_core.cpp
 
-// For the thresholds T (1 +- 1e-11 max(1, L / w)) the reference gives the same outcome, hit or
+// For the thresholds T (1 +- m), m = 1e-11 max(1, L / w) but at most 1e-3, the reference gives the same outcome, hit or
 // miss, and first roots within E w / |d|. L is the largest absolute coordinate of origin - skeleton
 // point (the first, or the center) of the element that is nearest, by distance, to the hit, or for a
 // ray without one to the ray; w is the width of that element. `known` is first_root(field, ray).

@@ -19,9 +19,10 @@
 #include <vector>
 
 #include "core/scene/error.h"
+#include "tests/reference/answer_lines.h"
+#include "tests/reference/referee.h"
 #include "tests/reference/scene.h"
 #include "tests/reference/verdict.h"
-#include "tests/tools/answer_lines.h"
 #include "tests/tools/run_tool.h"
 
 namespace {
@@ -30,6 +31,7 @@ using namespace ivory;
 using reference::Fault;
 using reference::Outcome;
 using reference::Verdict;
+using Status = reference::Claim::Status;
 
 // A normal or a colour further off than this is a fault.
 constexpr double allowed_shading_error = 1e-9;
@@ -84,33 +86,14 @@ struct Totals {
     }
 };
 
-std::string described(const tools::CheckedLine& line, const std::string& fault,
-                      const Verdict& verdict) {
-    const auto& ray = line.ray;
-    char text[512];
-    std::snprintf(text, sizeof text, "line %zu: %s; ray %a %a %a %a %a %a; answer [%.17g, %.17g]",
-                  line.number, fault.c_str(), ray.origin.x, ray.origin.y, ray.origin.z,
-                  ray.direction.x, ray.direction.y, ray.direction.z, line.answer.isolation.t.lo,
-                  line.answer.isolation.t.hi);
-    std::string result = text;
-    switch (verdict.reference.outcome) {
-        case Outcome::hit:
-            return result + "; reference hit " + to_string(verdict.reference.t.lo);
-        case Outcome::miss:
-            return result + "; reference miss";
-        case Outcome::unknown:
-            return result + "; reference unknown from " + to_string(verdict.reference.t.lo);
-    }
-    return result;
-}
-
-void judge(const reference::ReferenceField& field, const tools::CheckedLine& line, double tolerance,
-           bool with_decidable, Totals& totals) {
-    const Verdict verdict = check(field, line.ray, tolerance, line.answer);
-    const Status status = line.answer.isolation.status;
+void judge(const reference::ReferenceField& field, const reference::CheckedLine& line,
+           double tolerance, bool with_decidable, Totals& totals) {
+    const Verdict verdict = check(field, line.ray, tolerance, line.claim);
+    const Status status = line.claim.status;
     const auto complain = [&](const std::string& fault) {
         if (totals.messages.size() < 20) {
-            totals.messages.push_back(described(line, fault, verdict));
+            totals.messages.push_back("line " + std::to_string(line.number) + ": " +
+                                      described(fault, line.ray, line.claim, verdict.reference));
         }
     };
     ++totals.checked;
@@ -225,13 +208,13 @@ int run(int argc, char** argv) {
         return in;
     };
     const reference::ReferenceField field(reference::read_reference_scene(scene_path));
-    std::optional<std::vector<Ray>> rays;
+    std::optional<std::vector<reference::Ray>> rays;
     if (!rays_path.empty()) {
         std::ifstream in = open(rays_path);
-        rays = tools::read_rays(in);
+        rays = reference::read_rays(in);
     }
     std::ifstream in = open(answers_path);
-    const std::vector<tools::CheckedLine> lines = tools::read_answers(in, rays);
+    const std::vector<reference::CheckedLine> lines = reference::read_answers(in, rays);
 
     std::vector<std::size_t> chosen(lines.size());
     std::iota(chosen.begin(), chosen.end(), std::size_t{0});

@@ -140,7 +140,7 @@ Scene random_scene(const SceneRecipe& recipe, std::uint64_t seed) {
     scene.threshold = random.uniform(0.1, 0.9);
     if (recipe.critical) {
         // At the origin t = 0 of any ray that starts there.
-        const Ray from_center{{0, 0, 0}, {0, 0, 1}};
+        const reference::Ray from_center{{0, 0, 0}, {0, 0, 1}};
         const double field = reference::ReferenceField(scene)
                                  .at(from_center, reference::Real(0.0))
                                  .f.lo.to_double() +

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/trace/ray.h"
 #include "tests/reference/reference.h"
 #include "tests/tools/random_scene.h"
 #include "tests/tools/seed.h"

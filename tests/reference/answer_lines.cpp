@@ -1,18 +1,17 @@
-#include "tests/tools/answer_lines.h"
+#include "tests/reference/answer_lines.h"
 
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
 
-#include "core/scene/error.h"
-
-namespace ivory::tools {
+namespace ivory::reference {
 
 namespace {
 
 [[noreturn]] void refuse(std::size_t line, const std::string& fault) {
-    throw Error("line " + std::to_string(line) + ": " + fault);
+    throw std::runtime_error("line " + std::to_string(line) + ": " + fault);
 }
 
 double number(const std::string& text, std::size_t line) {
@@ -34,12 +33,12 @@ std::vector<std::string> split(const std::string& line) {
     return cells;
 }
 
-Status status_of(const std::string& word, std::size_t line) {
-    if (word == "hit") return Status::hit;
-    if (word == "miss") return Status::miss;
-    if (word == "unresolved") return Status::unresolved;
-    if (word == "claimed_hit") return Status::claimed_hit;
-    if (word == "claimed_miss") return Status::claimed_miss;
+Claim::Status status_of(const std::string& word, std::size_t line) {
+    if (word == "hit") return Claim::Status::hit;
+    if (word == "miss") return Claim::Status::miss;
+    if (word == "unresolved") return Claim::Status::unresolved;
+    if (word == "claimed_hit") return Claim::Status::claimed_hit;
+    if (word == "claimed_miss") return Claim::Status::claimed_miss;
     refuse(line, "not a status: '" + word + "'");
 }
 
@@ -48,21 +47,20 @@ Vec3d vector_of(const std::vector<std::string>& cells, std::size_t first, std::s
             number(cells[first + 2], line)};
 }
 
-Answer answer_of(const std::vector<std::string>& cells, std::size_t first, std::size_t line) {
-    Answer answer;
-    answer.isolation.status = status_of(cells[first], line);
-    if (answer.isolation.status == Status::miss ||
-        answer.isolation.status == Status::claimed_miss) {
+Claim claim_of(const std::vector<std::string>& cells, std::size_t first, std::size_t line) {
+    Claim claim;
+    claim.status = status_of(cells[first], line);
+    if (claim.status == Claim::Status::miss || claim.status == Claim::Status::claimed_miss) {
         for (std::size_t i = first + 1; i < first + 9; ++i) {
             if (!cells[i].empty()) refuse(line, "a miss with columns that are not empty");
         }
-        return answer;
+        return claim;
     }
-    answer.isolation.t.lo = number(cells[first + 1], line);
-    answer.isolation.t.hi = number(cells[first + 2], line);
-    answer.surface.normal = vector_of(cells, first + 3, line);
-    answer.surface.color = vector_of(cells, first + 6, line);
-    return answer;
+    claim.lo = number(cells[first + 1], line);
+    claim.hi = number(cells[first + 2], line);
+    claim.normal = vector_of(cells, first + 3, line);
+    claim.color = vector_of(cells, first + 6, line);
+    return claim;
 }
 
 }  // namespace
@@ -117,13 +115,13 @@ std::vector<CheckedLine> read_answers(std::istream& in,
         if (rays && lines.size() == rays->size()) refuse(count, "more answers than rays");
         const Ray ray = rays ? (*rays)[lines.size()]
                              : Ray{vector_of(cells, 0, count), vector_of(cells, 3, count)};
-        lines.push_back({count, ray, answer_of(cells, first, count)});
+        lines.push_back({count, ray, claim_of(cells, first, count)});
     }
     if (rays && lines.size() != rays->size()) {
-        throw Error(std::to_string(lines.size()) + " answers for " + std::to_string(rays->size()) +
-                    " rays");
+        throw std::runtime_error(std::to_string(lines.size()) + " answers for " +
+                                 std::to_string(rays->size()) + " rays");
     }
     return lines;
 }
 
-}  // namespace ivory::tools
+}  // namespace ivory::reference

@@ -7,22 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "core/trace/ray.h"
+#include "tests/reference/claim.h"
+#include "tests/reference/ray.h"
 
-namespace ivory::tools {
+namespace ivory::reference {
 
 struct CheckedLine {
     std::size_t number;  // in its file, from 1
     Ray ray;
-    Answer answer;
+    Claim claim;
 };
 
-// All rays of a ray file, as the contract defines it. Throws Error on a faulty line.
+// All rays of a ray file, as the contract defines it. Throws std::runtime_error on a faulty line.
 [[nodiscard]] std::vector<Ray> read_rays(std::istream& in);
 
 // The lines of `trace` for the given rays, or, without rays, of `render --answers`, whose lines
-// begin with the ray. Throws Error on a faulty line and where the counts differ.
+// begin with the ray. Throws std::runtime_error on a faulty
+// line and where the counts differ.
 [[nodiscard]] std::vector<CheckedLine> read_answers(std::istream& in,
                                                     const std::optional<std::vector<Ray>>& rays);
 
-}  // namespace ivory::tools
+}  // namespace ivory::reference
