@@ -220,7 +220,7 @@ class Search {
         for (int count = 0; !open.empty(); ++count) {
             Part part = std::move(open.back());
             open.pop_back();
-            if (count > 1000000) {
+            if (count > 100000) {
                 return {Outcome::unknown, RealInterval(Real(part.lo), Real(hi))};
             }
             const OutwardDouble t(part.lo, part.hi);
