@@ -116,8 +116,10 @@ void write(const std::filesystem::path& path, const std::string& text) {
 // One scene, its rays and its picture.
 class Court {
   public:
-    Court(const Settings& settings, Family family, std::uint64_t seed)
+    // Adjourned at the deadline: what was not traced by then is not.
+    Court(const Settings& settings, Family family, std::uint64_t seed, Clock::time_point deadline)
         : settings_(settings),
+          deadline_(deadline),
           family_(family),
           seed_(seed),
           trial_(make_trial(family, seed, settings.rays)),
@@ -136,6 +138,7 @@ class Court {
         list_ = all_elements(field_);
         rays.trials = 1;
         for (const Ray& ray : trial_.rays) {
+            if (Clock::now() > deadline_) break;
             Counts counts;
             const Answer answer = trace_alone(ray, ray_tolerance, counts);
             rays.evaluations.push_back(static_cast<std::uint32_t>(counts.evaluations));
@@ -226,6 +229,7 @@ class Court {
             report.counts.evaluations / static_cast<std::uint64_t>(width * height)));
         for (int j = 0; j < height; ++j) {
             for (int i = 0; i < width; ++i) {
+                if (Clock::now() > deadline_) return;
                 const Ray ray = primary_ray(picture->view, width, height, i, j);
                 const Answer answer = answer_of(canvas.frame, i, j);
                 Counts counts;
@@ -266,6 +270,7 @@ class Court {
     }
 
     const Settings& settings_;
+    Clock::time_point deadline_;
     Family family_;
     std::uint64_t seed_;
     stress::Trial trial_;
@@ -338,10 +343,16 @@ int run(int argc, char** argv) {
             std::find(family_words.begin(), family_words.end(), word) - family_words.begin());
         Tally rays, pixels;
         const auto start = Clock::now();
+        // A trial that takes long is cut off, unless each is to be the same again.
+        const auto deadline = settings.trials > 0
+                                  ? Clock::time_point::max()
+                                  : start + std::chrono::duration_cast<Clock::duration>(
+                                                std::chrono::duration<double>(1.2 * share));
         for (std::uint64_t n = 0; settings.trials == 0 || n < settings.trials; ++n) {
             const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
             if (settings.trials == 0 && seconds >= share) break;
-            const auto [of_rays, of_pixels] = Court(settings, family, settings.seed + n).hold();
+            const auto [of_rays, of_pixels] =
+                Court(settings, family, settings.seed + n, deadline).hold();
             rays.add(of_rays);
             pixels.add(of_pixels);
         }
