@@ -288,10 +288,11 @@ void print_header() {
                 "beyond", "decidable", "open", "open/1e4", "widest", "unres. w", "evals", "most",
                 "shading");
 }
-void print_row(const std::string& name, const Tally& tally) {
+void print_row(std::FILE* out, const std::string& name, const Tally& tally) {
     const double decidable = tally.decidable();
     const double rate = decidable > 0 ? 1e4 * tally.open() / decidable : 0;
-    std::printf(
+    std::fprintf(
+        out,
         "%-18s %6zu %8zu %8zu %8zu %7zu %6zu %7zu %7zu %9.0f %6zu %8.2f%s %8.1e %9.1e %8.0f %8.0f "
         "%7zu\n",
         name.c_str(), tally.trials, tally.traced, tally.hits, tally.misses, tally.unresolved,
@@ -358,14 +359,13 @@ int run(int argc, char** argv) {
         }
         all.add(rays);
         all.add(pixels);
-        std::fprintf(stderr, "%s: %.0f s, wrong %zu, left open %zu\n", word.c_str(),
-                     std::chrono::duration<double>(Clock::now() - start).count(),
-                     rays.wrong + pixels.wrong, rays.left_open + pixels.left_open);
+        print_row(stderr, word, rays);  // again below, without complaints in between
+        print_row(stderr, "  pixels", pixels);
         rows.emplace_back(word, std::move(rays));
         rows.emplace_back("  pixels", std::move(pixels));
     }
     print_header();
-    for (const auto& [name, tally] : rows) print_row(name, tally);
+    for (const auto& [name, tally] : rows) print_row(stdout, name, tally);
     std::printf("\nwrong %zu, left open %zu, normals or colours off %zu, beyond %ld bits %zu\n",
                 all.wrong, all.left_open, all.normals_off + all.colors_off, settings.most_bits,
                 all.beyond);
