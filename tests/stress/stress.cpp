@@ -161,7 +161,9 @@ class Court {
         tally.misses += status == Status::miss;
         tally.unresolved += status == Status::unresolved;
         const bool drawn = random_.chance(judged_);
-        const bool open = status == Status::unresolved && random_.chance(judged_open_);
+        // Of a trial that leaves nearly all open some will do.
+        const bool open = status == Status::unresolved &&
+                          random_.chance(told_open_ > 20 ? 0.05 * judged_open_ : judged_open_);
         if (drawn || suspect || open) {
             judge(ray, tolerance, answer, tally, what, drawn);
         }
