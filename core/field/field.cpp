@@ -8,8 +8,10 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "core/field/bounding_box.h"
+#include "core/field/middle_scale.h"
 #include "core/math/parallel.h"
 
 namespace ivory {
@@ -265,7 +267,9 @@ bool same_numbers(const Element& a, const Element& b) {
 
 }  // namespace
 
-Field compile(const Scene& scene, int threads) {
+namespace {
+
+Field compile_as_it_is(const Scene& scene, int threads) {
     Field field;
     field.threshold = scene.threshold;
     std::array<std::vector<std::uint32_t>, field_groups> groups;
@@ -334,9 +338,22 @@ Field compile(const Scene& scene, int threads) {
     return field;
 }
 
+}  // namespace
+
+Field compile(const Scene& scene, int threads) {
+    Field field = compile_as_it_is(scene, threads);
+    field.exponent_to_middle = exponent_to_middle(scene);
+    if (field.exponent_to_middle != 0) {
+        field.middle = std::make_shared<const Field>(
+            compile_as_it_is(in_middle(scene, field.exponent_to_middle), threads));
+    }
+    return field;
+}
+
 Refit refit(Field& field, const Scene& before, const Scene& after) {
     constexpr std::size_t most_in_clusters = 64;
     if (before.elements.size() != after.elements.size()) return Refit::impossible;
+    if (field.middle != nullptr || exponent_to_middle(after) != 0) return Refit::impossible;
     std::vector<std::uint32_t> changed;  // in the scene
     bool is_moved = false;
     for (std::size_t i = 0; i < after.elements.size(); ++i) {
@@ -408,6 +425,11 @@ std::vector<std::uint32_t> recolor(Field& field, const Scene& scene) {
         // Mixing equal colours rounds: it is not the colour itself.
         changed.resize(field.size());
         std::iota(changed.begin(), changed.end(), 0U);
+    }
+    if (field.middle != nullptr) {
+        Field middle = *field.middle;
+        recolor(middle, scene);
+        field.middle = std::make_shared<const Field>(std::move(middle));
     }
     return changed;
 }

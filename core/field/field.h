@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,6 +75,11 @@ struct Field {
     // proved. Empty: the surface is empty. mathematics: core/field/bounding_box.h
     Box3 reach_box;
     Box3 box;
+
+    // Of a scene near the ends of the doubles, that with all lengths times 2^exponent
+    // (core/field/middle_scale.h); else null.
+    std::shared_ptr<const Field> middle;
+    int exponent_to_middle = 0;
 
     friend bool operator==(const Field&, const Field&) = default;
 

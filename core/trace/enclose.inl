@@ -167,9 +167,9 @@ HWY_INLINE V<F> narrowed(const V<D> (&x)[n], double factor) {
 
 // f of the fine stage, and the slope of its entries in double.
 template <std::size_t n>
-void evaluate_fine(const Window& window, double threshold, double unit, const Vec3v<D> (&p)[n],
-                   const Vec3v<D> (&direction)[n], FieldValue<D> (&value)[n],
-                   Branches<D> (&branches)[n]) {
+void evaluate_fine(const Window& window, double threshold, double unit, bool has_joined,
+                   const Vec3v<D> (&p)[n], const Vec3v<D> (&direction)[n],
+                   FieldValue<D> (&value)[n], Branches<D> (&branches)[n]) {
     const D d;
     const F narrow;
     for_each_of<n>([&](auto half) HWY_ATTR {
@@ -201,6 +201,7 @@ void evaluate_fine(const Window& window, double threshold, double unit, const Ve
     for_each_of<n>([&](auto half) HWY_ATTR {
         const auto sum = hn::Load(hn::Rebind<float, D>(), sums + half * hn::Lanes(d));
         value[half].f = hn::Add(value[half].f, hn::PromoteTo(d, sum));
+        if (!has_joined) return;
         const auto both = hn::Load(hn::Rebind<float, D>(), opens + half * hn::Lanes(d));
         branches[half].more = hn::Add(branches[half].more, hn::PromoteTo(d, both));
         branches[half].less = hn::Add(branches[half].less, hn::PromoteTo(d, both));
@@ -336,7 +337,8 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
         }
         for_each_of<n>([&](auto half)
                            HWY_ATTR { p[half] = place(task.window, ray[half], enclosed[half].m); });
-        evaluate_fine(task.window, task.threshold, task.unit, p, direction, value, branches);
+        evaluate_fine(task.window, task.threshold, task.unit, task.has_joined, p, direction, value,
+                      branches);
         for_each_of<n>([&](auto half) HWY_ATTR {
             enclosed[half].take(task, value[half], branches[half], reach);
         });
