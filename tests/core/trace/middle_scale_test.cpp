@@ -65,7 +65,7 @@ TEST(MiddleScale, AnswersAreThoseOfTheMiddle) {
 
 TEST(MiddleScale, PicturesToo) {
     Scene scene = tools::random_scene({.elements = 4}, 5);
-    scene.camera = Camera{.position = {0, 0, 16}, .target = {0, 0, 0}};
+    scene.camera = Camera{.position = {0, 0, 7}, .target = {0, 0, 0}};
     const Method& proved = *find_method("proved");
     const auto statuses_of = [&](const Scene& of) {
         const Picture picture = make_picture(of, 24, 16, proved, {}, 1);
@@ -82,7 +82,7 @@ TEST(MiddleScale, PicturesToo) {
     for (const int exponent : {-300, 300}) {
         Scene far = in_middle(scene, exponent);
         far.camera = scene.camera;
-        far.camera->position.z = std::ldexp(16.0, exponent);
+        far.camera->position.z = std::ldexp(7.0, exponent);
         EXPECT_EQ(here, statuses_of(far)) << exponent;
     }
 }
@@ -91,9 +91,10 @@ TEST(MiddleScale, WhatIsNotExactStaysAsItIs) {
     Scene scene;
     scene.elements.push_back(
         Element{.skeleton = PointSkeleton{{0x1.23456789abcdfp600, 0, 0}}, .width = 0x1.fp-1000});
-    EXPECT_EQ(exponent_to_middle(scene), 200);
-    scene.elements.push_back(Element{.skeleton = PointSkeleton{{0x1.fffffffffffffp1023, 0, 0}}});
-    EXPECT_EQ(exponent_to_middle(scene), 0);  // that would overflow
+    EXPECT_EQ(exponent_to_middle(scene), 199);
+    scene.elements.push_back(
+        Element{.skeleton = PointSkeleton{{0x1.fffffffffffffp1023, 0x1p-1074, 0}}});
+    EXPECT_EQ(exponent_to_middle(scene), 0);  // that would underflow
 }
 
 }  // namespace
