@@ -254,11 +254,16 @@ curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v
     // One foot that is lower than all other places by q |y - x|^2: as `proved_foot` in curve.h.
     const double whole_fall = -foot.slope(Span(-1.0, 1.0)).hi;  // of g, at the least
     if (!(whole_fall > 0)) {
-        double x = -1;
+        const Vec3d middle{midpoint(v.x), midpoint(v.y), midpoint(v.z)};
+        const auto vector = [&](std::size_t k) {
+            return Vec3d{numbers[k], numbers[k + 1], numbers[k + 2]};
+        };
+        const Vec3d k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
+        double x = -1, nearest = infinity<double>;
         for (const double place : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-            const double square = square_at(Span(place)).hi;
-            if (square < best) x = place;
-            best = std::min(best, square);
+            const Vec3d away = middle - place * (k1 + place * (k2 + place * k3));
+            if (dot(away, away) < nearest) x = place;
+            nearest = std::min(nearest, dot(away, away));
         }
         x = foot.refined(x);
         const Span g = foot.at(Span(x));
