@@ -1,6 +1,7 @@
 #include "core/field/bundle_field.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/interval/slabs.h"
@@ -22,6 +23,8 @@ constexpr double full_cut_share = 0x1p-16;  // of the fine cut
 constexpr double float_cut_multiple = 0x1p13;
 // Unless what float loses of them all is more than this share of that cut: places may be rough.
 constexpr double worst_float_share = 0x1p-6;
+// In crowds that cut is lowered by steps until float loses no more than that multiple of the fine cut.
+constexpr double next_float_cut = 0x1p-3, worst_in_crowd = 8;
 // The multiple for windows that leave out next to nothing.
 constexpr double full_mixed_cut_multiple = 0x1p-3;
 
@@ -30,6 +33,12 @@ constexpr double full_mixed_cut_multiple = 0x1p-3;
 constexpr double about_root_reach = 0x1p-6;
 
 constexpr double u_float = 0x1p-22;  // of sums in float, as add_rest wants it
+
+// Fewer elements are added up as quickly as a polynomial of them is made.
+constexpr std::size_t crowd = 128;
+// For a walk through a crowd elements below this multiple of the fine cut are left out; those that enclose its
+// roots are above that one: the sum of what many leave out is far more than what each does.
+constexpr double crowd_cut_multiple = 0x1p10, crowd_fine_cut_multiple = 0x1p-6;
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.
@@ -51,7 +60,7 @@ bool BundleField::build(const Field& field, const ElementList& list, const Bundl
     const Vec3d& o = bundle.origin;
     if (!(std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) < 1e30)) return false;
 
-    home_ = whole_of(bundle);
+    begin(whole_of(bundle), false);
     scale_ = field.scale;
     threshold_ = field.threshold * scale_;
     unit_ = field.unit;
@@ -149,11 +158,18 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
     PeakSums peaks;
     double u = 0x1p-52;  // of the sums
     here.is_local = parent.is_local;
+    here.is_condensed = false;
     if (parent.is_local) {
         u = u_float;
         here.local_middle = parent.local_middle;
-        peaks = bundle_steps().bound_local(
-            parent.local, local_stretch(part, parent.local_middle, t0, t1), fine_cut_, here.local);
+        const LocalStretch on = local_stretch(part, parent.local_middle, t0, t1);
+        if (is_crowded(parent)) {
+            peaks = bundle_steps().bound_local(parent.local, on, fine_cut_ * crowd_cut_multiple,
+                                               here.local);
+        }
+        if (!is_crowded(parent) || !is_crowded(here)) {
+            peaks = bundle_steps().bound_local(parent.local, on, fine_cut_, here.local);
+        }
         here.left_out = parent.left_out.with(peaks, parent.local.size(), u);
         // Places far from what they are relative to have lost digits.
         const double middle = 0.5 * (t0 + t1);
@@ -225,6 +241,33 @@ AcrossSums BundleField::bound_across(const BundlePart& part, double t0, double t
     return across;
 }
 
+bool BundleField::is_crowded(const Bounded& bounded) const {
+    constexpr std::size_t gaussians = group_of(Shape::point, KernelKind::blinn);
+    if (!condenses_ || !bounded.is_local || bounded.size() < crowd) return false;
+    const GroupStarts::Range range = bounded.local.first.of(gaussians);
+    return range.end - range.first == bounded.size();
+}
+
+Condensing BundleField::condense(const BundlePart& part, double t0, double t1, bool may_part,
+                                 Bounded& bounded) const {
+    Condensed& condensed = bounded.condensed;
+    const double middle = (0.5 * (t0 + t1) - bounded.local_middle) / unit_;
+    const Condensing done = bundle_steps().condense(
+        bounded.local, local_stretch(part, bounded.local_middle, t0, t1), middle, threshold_,
+        may_part, condensed);
+    bounded.is_condensed = done == Condensing::condensed;
+    if (!bounded.is_condensed) return done;
+    const double per_unit = 1 / unit_;
+    bounded.rise = condensed.rise * (per_unit * per_unit);
+    bounded.fall = condensed.fall * (per_unit * per_unit);
+    bounded.kinked_slope = 0;
+    return done;
+}
+
+bool BundleField::is_below(const Bounded& bounded) const {
+    return bounded.condensed.most + bounded.left_out.above * more < threshold_ * less;
+}
+
 bool BundleField::is_too_curved(const Bounded& bounded, double length) const {
     return length > least_length * least_width_ &&
            (std::max(bounded.rise, bounded.fall) * length * length > curvature_limit * threshold_ ||
@@ -235,6 +278,18 @@ namespace {
 
 // Roundings that a sum of so many entries takes part in.
 double roundings(std::size_t entries) { return static_cast<double>(entries + 4); }
+
+// Of the fine entries in float, of which some are added up first.
+double roundings_in_float(const StageEntries<float>& stage) {
+    std::size_t longest = 0, sums = 0;
+    for (std::uint64_t left = stage.present; left != 0; left &= left - 1) {
+        const auto group = static_cast<std::size_t>(std::countr_zero(left));
+        const std::size_t count = stage.count[group];
+        longest = std::max(longest, count);
+        sums += 1 + count / float_sum_length;
+    }
+    return roundings(std::min<std::size_t>(longest, float_sum_length) + sums);
+}
 
 // Of a compensated sum: each product's own, the last one's, and that of adding the faint entries;
 // what is carried along is rounded by u^2 alone.
@@ -258,6 +313,10 @@ StageBounds stage_bounds(const StageSums& stage, double u, double u_sums, double
 
 }  // namespace
 
+BundleField::FloatCuts BundleField::float_cuts(double cut) {
+    return {cut, cut, cut * worst_float_share};
+}
+
 Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0, double t1) {
     Window& w = window_;
     opened_ = &here;
@@ -275,6 +334,31 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.fall = here.fall;
     w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = false;
 
+    w.condensed = nullptr;
+    opened_condensed_ = here.is_condensed;
+    if (here.is_condensed) {
+        w.condensed = &here.condensed;
+        w.walk_left_out = (here.left_out.above + here.left_out.below) * more;
+        // |grad F| is 2 q F / w, and what is left out q < 8, or next to nothing.
+        w.gradient_error =
+            here.condensed.gradient_error + 16 * w.walk_left_out * (unit_ / least_width_);
+        w.strong.clear();
+        w.weak.clear();
+        const double slope = here.condensed.slope_error;
+        w.strong_bounds = w.coarse_bounds = {here.left_out.above * more + here.condensed.error,
+                                             here.left_out.below * more + here.condensed.error,
+                                             slope};
+        w.coarse_usable = true;
+        return w;
+    }
+    enter(here, part, w);
+    return w;
+}
+
+void BundleField::enter(Window& window) { enter(*opened_, opened_part_, window); }
+
+void BundleField::enter(const Bounded& here, const BundlePart& part, Window& w) {
+    const double t0 = w.begin, t1 = w.end;
     const CoarseCuts cuts{threshold_ * strong_cut_share, threshold_ * coarse_cut_share};
     StageSums sums;
     double slope_unit = unit_, u_sums = 0x1p-53;
@@ -297,18 +381,18 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     const double size = (sums.magnitude + threshold_) * unit_ * unit_;
     w.coarse_usable = sums.usable && size * w.rise < 1e30 && size * w.fall < 1e30 &&
                       sums.full_slope * slope_unit < 1e14 && w.strong_bounds.slope < 1e14;
-    return w;
 }
 
 Window& BundleField::open_unknown() {
     window_.coarse_usable = false;
+    window_.condensed = nullptr;
     window_.begin = 0;
     return window_;
 }
 
 // From doubles or, where they are there, floats.
 void BundleField::complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
-                           double float_cut, Window& w) {
+                           const FloatCuts& float_cuts, Window& w) {
     const ActiveElements* active = &bounded.active;
     w.fine_in_float.clear();
     StageBounds in_float;
@@ -320,7 +404,7 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
             const StageSums sums = bundle_steps().fine_in_float(bounded.local, near_on, middle,
                                                                 unit_, cut, w, members_);
             if (w.fine_in_float.size > 0) {
-                in_float = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings(w.fine_in_float.size),
+                in_float = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings_in_float(w.fine_in_float),
                                         bounded.local.size(), 0, {}, 1, 1e-30);
                 // No slope of theirs is computed.
                 in_float.slope = sums.full_slope *
@@ -328,11 +412,14 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
                                  unit_;
             }
             return sums.usable &&
-                   std::max(in_float.above, in_float.below) <= cut * worst_float_share;
+                   std::max(in_float.above, in_float.below) <= float_cuts.worst;
         };
-        if (!part_at(float_cut)) {
+        double cut = float_cuts.greatest;
+        while (!part_at(cut)) {
             in_float = {};
-            part_at(-1);  // all in double
+            if (cut < 0) break;
+            cut *= next_float_cut;
+            if (cut < float_cuts.least) cut = -1;  // all in double
         }
     }
     const StageSums sums = bundle_steps().fine(*field_, on, scale_, *active, w);
@@ -348,10 +435,10 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
 
 void BundleField::complete(Window& w) {
     if (!w.is_complete)
-        complete(*opened_, opened_part_, opened_on_, fine_cut_ * float_cut_multiple, w);
+        complete(*opened_, opened_part_, opened_on_, float_cuts(fine_cut_ * float_cut_multiple), w);
 }
 
-void BundleField::take_opened(const Bounded& bounded, double float_cut, Window& w) {
+void BundleField::take_opened(const Bounded& bounded, const FloatCuts& float_cuts, Window& w) {
     w.begin = window_.begin;
     w.middle = window_.middle;
     w.end = window_.end;
@@ -359,7 +446,7 @@ void BundleField::take_opened(const Bounded& bounded, double float_cut, Window& 
     w.origin = window_.origin;
     w.rise = bounded.rise;
     w.fall = bounded.fall;
-    complete(bounded, opened_part_, opened_on_, float_cut, w);
+    complete(bounded, opened_part_, opened_on_, float_cuts, w);
 }
 
 const Window& BundleField::full() {
@@ -373,26 +460,66 @@ const Window& BundleField::full() {
     bound(opened_on_, full_cut_, *from, false, full_bounded_);
     full_bounded_.is_local = false;
     bound_curvature(opened_on_, full_bounded_);
-    take_opened(full_bounded_, 0, full_);
+    take_opened(full_bounded_, float_cuts(0), full_);
     return full_;
 }
 
 // Of clusters the members are bounded in float.
 const Window& BundleField::full_mixed() {
-    if (!(list_.in_clusters && opened_->is_local)) return full();
+    if (!opened_condensed_ && !(list_.in_clusters && opened_->is_local)) return full();
     if (has_full_mixed_) return full_mixed_;
     has_full_mixed_ = true;
     Bounded& finer = full_bounded_;
-    bound(opened_on_, full_cut_, list_, true, full_clusters_);
-    finer.is_local = true;
-    finer.in_clusters = false;
-    finer.local_middle = window_.middle;
+    const double cut = opened_condensed_ ? fine_cut_ * crowd_fine_cut_multiple : full_cut_;
     const double t0 = opened_on_.begin - pad_of(opened_on_.begin, opened_on_.end),
                  t1 = opened_on_.end + pad_of(opened_on_.begin, opened_on_.end);
-    bound_members(opened_part_, t0, t1, full_cut_, full_clusters_, finer);
+    finer.local_middle = window_.middle;
+    if (list_.in_clusters) {
+        bound(opened_on_, cut, list_, true, full_clusters_);
+        finer.in_clusters = false;
+        bound_members(opened_part_, t0, t1, cut, full_clusters_, finer);
+    } else {
+        Stretch padded = opened_on_;
+        padded.begin = t0;
+        padded.end = t1;
+        bound(padded, cut, list_, false, finer);
+        bundle_steps().enter_local(*field_, stretch(home_, t0, t1), finer.local_middle,
+                                   finer.active, finer.local);
+    }
+    finer.is_local = true;
     bound_curvature(opened_part_, t0, t1, finer);
-    take_opened(finer, fine_cut_ * full_mixed_cut_multiple, full_mixed_);
+    take_opened(finer,
+                opened_condensed_
+                    ? FloatCuts{fine_cut_ * float_cut_multiple, fine_cut_, fine_cut_ * worst_in_crowd}
+                    : float_cuts(fine_cut_ * full_mixed_cut_multiple),
+                full_mixed_);
     return full_mixed_;
+}
+
+const Window* BundleField::along(const Vec3d& origin, const Vec3d& direction) {
+    full_mixed();
+    Window& w = about_root_;
+    w.begin = window_.begin;
+    w.middle = window_.middle;
+    w.end = window_.end;
+    w.axis = direction;
+    w.origin = origin;
+    w.compensated = false;
+    w.fine.clear();
+    w.fine_in_float.clear();
+    CondensedRay& ray = condensed_ray_;
+    if (!bundle_steps().condense_ray(*field_, full_bounded_.local, origin, direction, w.begin, w.end,
+                                     scale_, threshold_, ray)) {
+        return nullptr;
+    }
+    w.along = &ray;
+    w.rise = ray.rise;
+    w.fall = ray.fall;
+    const LeftOut& left_out = full_bounded_.left_out;
+    w.fine_bounds = {left_out.above * more + ray.error, left_out.below * more + ray.error,
+                     ray.slope_error};
+    w.fine_usable = w.is_complete = true;
+    return &w;
 }
 
 const Window& BundleField::about_root(const Vec3d& origin, const Vec3d& direction, double t) {
@@ -408,6 +535,7 @@ const Window& BundleField::about_root(const Vec3d& origin, const Vec3d& directio
     w.axis = direction;
     w.origin = origin;
     w.compensated = true;
+    w.along = nullptr;
     // The places are relative to the window's middle.
     const double pad = pad_of(window_.begin, window_.end);
     const double t0 = w.begin - pad, t1 = w.end + pad;
@@ -423,7 +551,8 @@ const Window& BundleField::about_root(const Vec3d& origin, const Vec3d& directio
     bound_curvature(ray, t0, t1, here);
     w.rise = here.rise;
     w.fall = here.fall;
-    complete(here, ray, stretch(ray, w.begin, w.end), fine_cut_ * full_mixed_cut_multiple, w);
+    complete(here, ray, stretch(ray, w.begin, w.end),
+             float_cuts(fine_cut_ * full_mixed_cut_multiple), w);
     return w;
 }
 

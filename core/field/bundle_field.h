@@ -54,6 +54,8 @@ struct Bounded {
     LeftOut left_out;
     double rise = 0, fall = 0;  // bounds of f'' and of -f'', once they were asked for
     double kinked_slope = 0;    // upper bound of the |f'| of kinked elements; likewise
+    bool is_condensed = false;  // those bounds are of the polynomial
+    Condensed condensed;
 
     [[nodiscard]] std::size_t size() const { return is_local ? local.size() : active.size(); }
 };
@@ -67,8 +69,12 @@ class BundleField {
     // may be called.
     bool build(const Field& field, const ElementList& list, const Bundle& bundle, double tolerance,
                bool skips_windows, Cancellation* stop);
-    // Places in float are measured on another bundle's axis.
-    void measure_on(const BundlePart& home) { home_ = home; }
+    // Places in float are measured on another bundle's axis. Where elements are crowded windows are
+    // `condensed`, so that what little many of them add may be left to the fine stage.
+    void begin(const BundlePart& home, bool condenses) {
+        home_ = home;
+        condenses_ = condenses;
+    }
 
     // The t outside of which every ray of the bundle is outside of the field's box, and so f < 0;
     // empty: a miss.
@@ -84,6 +90,13 @@ class BundleField {
                bool in_clusters);
     // And its f''.
     void bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
+    // Whether elements are so many, and such, that their polynomial is worth more than they are, and wanted.
+    [[nodiscard]] bool is_crowded(const Bounded& bounded) const;
+    // That of the window [t0, t1], and by it its f''; `may_part` if the part's rays are divided further.
+    [[nodiscard]] Condensing condense(const BundlePart& part, double t0, double t1, bool may_part,
+                                      Bounded& bounded) const;
+    // Whether f < 0 on all of it, by the polynomial.
+    [[nodiscard]] bool is_below(const Bounded& condensed) const;
     // Whether a window so long would need more steps than two of half the length.
     [[nodiscard]] bool is_too_curved(const Bounded& bounded, double length) const;
 
@@ -102,11 +115,14 @@ class BundleField {
     // One on which nothing is known, and which begins at 0.
     Window& open_unknown();
 
+    // The coarse entries of the window that is open, which is condensed: to be looked at.
+    void enter(Window& window);
+
     // The fine stage of the window that is open, if it is not there yet.
     void complete(Window& window);
 
     // The window that is open, with a fine stage that leaves out next to nothing and bounds of f''
-    // for it. No coarse stage; `full` has none in float either.
+    // for it. No coarse stage; `full` has none in float either. A condensed window has no other.
     const Window& full();
     const Window& full_mixed();
 
@@ -122,6 +138,10 @@ class BundleField {
     }
     static constexpr double long_stretch = 4;  // units
 
+    // The condensed window that is open for one of its rays alone, condensed along it, in double; null: it
+    // cannot be. Good until the next one.
+    const Window* along(const Vec3d& origin, const Vec3d& direction);
+
     // Whether the stop has been seen since `build`.
     [[nodiscard]] bool is_stopped() const { return is_stopped_; }
     // Bounded since `build`, and how many of them were ended by the sum of peaks.
@@ -134,6 +154,13 @@ class BundleField {
     [[nodiscard]] double threshold() const { return threshold_; }
 
   private:
+    // Which elements of a fine stage are added up in float: those with |F| at most `greatest`, or if these are
+    // off by more than `worst` in all, less, down to `least`.
+    struct FloatCuts {
+        double greatest, least, worst;
+    };
+    [[nodiscard]] static FloatCuts float_cuts(double cut);
+
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     [[nodiscard]] LocalStretch local_stretch(const BundlePart& part, double middle, double t0,
                                              double t1) const;
@@ -143,9 +170,10 @@ class BundleField {
     PeakSums bound_members(const BundlePart& part, double t0, double t1, double cut,
                            const Bounded& parent, Bounded& result);
     void bound_curvature(const Stretch& on, Bounded& bounded) const;
+    void enter(const Bounded& bounded, const BundlePart& part, Window& window);
     void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
-                  double float_cut, Window& window);
-    void take_opened(const Bounded& bounded, double float_cut, Window& window);
+                  const FloatCuts& float_cuts, Window& window);
+    void take_opened(const Bounded& bounded, const FloatCuts& float_cuts, Window& window);
 
     const Field* field_ = nullptr;
     BundlePart home_;
@@ -155,17 +183,19 @@ class BundleField {
 
     const Bounded* opened_ = nullptr;  // what the window is of
     Stretch opened_on_;
+    bool opened_condensed_ = false;
     BundlePart opened_part_;
     Window window_;
     Bounded full_bounded_, about_root_bounded_;
     Window full_, full_mixed_, about_root_;
+    CondensedRay condensed_ray_;
     bool has_full_ = false, has_full_mixed_ = false;  // those are of the window
 
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double fine_cut_ = 0, full_cut_ = 0;
     Cancellation* stop_ = nullptr;
     bool is_stopped_ = false;
-    bool skips_windows_ = true;
+    bool skips_windows_ = true, condenses_ = false;
     std::uint64_t stretches_ = 0, stretches_ended_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/field/bundle_steps.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each instruction set
+#include "core/field/condense.inl"
 #include "core/field/curvature.inl"
 #include "core/field/entries.inl"
 #include "core/field/peaks.inl"
@@ -26,6 +27,8 @@ const BundleSteps& bundle_steps_of_target() {
                                    bound_local,
                                    bound_curvature_local,
                                    bound_across_local,
+                                   condense,
+                                   condense_ray,
                                    coarse,
                                    coarse_local,
                                    fine,

@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "core/field/active_elements.h"
+#include "core/field/condensed.h"
 #include "core/field/field.h"
 #include "core/field/local_elements.h"
 #include "core/math/vec3.h"
@@ -108,6 +109,18 @@ struct BundleSteps {
                             double cut, LocalElements& kept);
     CurvatureSums (*bound_curvature_local)(LocalElements& near, const LocalStretch& stretch);
     AcrossSums (*bound_across_local)(const LocalElements& near, const LocalStretch& stretch);
+
+    // The elements, all points with Blinn's kernel, as one polynomial about the place at `middle`, that of the
+    // window `stretch`, relative to the same place as they are. `may_part`: the window has parts that are
+    // narrower.
+    Condensing (*condense)(const LocalElements& near, const LocalStretch& stretch, double middle,
+                           double threshold, bool may_part, Condensed& condensed);
+
+    // And along the ray from `origin` on, |direction| = 1 within 2^-50, between `begin` and `end`; `near` are
+    // bounded there. False: they are too narrow, or the window too long.
+    bool (*condense_ray)(const Field& field, const LocalElements& near, const Vec3d& origin,
+                         const Vec3d& direction, double begin, double end, double scale,
+                         double threshold, CondensedRay& condensed);
 
     // The window's coarse entries, in units.
     StageSums (*coarse)(const Field& field, const Stretch& stretch, double scale,

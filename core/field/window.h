@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/field/condensed.h"
 #include "core/field/groups.h"
 #include "core/math/vec3.h"
 #include "core/shape/bundle_entry.h"
@@ -19,6 +20,9 @@ struct StageBounds {
     double above = 0, below = 0;  // f <= computed + above, f >= computed - below
     double slope = 0;             // |g' - computed|, g the sum over the fine entries
 };
+
+// Of so many entries of a group in float the sums are added up.
+inline constexpr std::uint32_t float_sum_length = 64;
 
 // The elements that a stage adds up, sorted by group.
 template <class Real>
@@ -65,6 +69,11 @@ struct Window {
     StageEntries<float> strong, weak;
     StageBounds strong_bounds, coarse_bounds;  // of the strong ones, of both; per unit
     bool coarse_usable = false;
+    // If not null, both are empty, or there to be looked at only, and this is f + T: it stays where it is.
+    const Condensed* condensed = nullptr;
+    const CondensedRay* along = nullptr;  // likewise of the fine entries, in a window for one ray
+    // Of a condensed one: what its elements leave out, at most, and what the gradient is off by, per unit.
+    double walk_left_out = 0, gradient_error = 0;
 
     // Once `complete` has been called for this window:
     bool is_complete = false;

@@ -15,13 +15,14 @@ bool Descent::build(const Field& field, const ElementList& list, const Bundle& b
     return true;
 }
 
-void Descent::begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget) {
+void Descent::begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget,
+                    bool condenses) {
     left_ = budget;
     parts_ = parts;
     rays_ = rays;
     open_.clear();
     if (is_empty(span_)) return;
-    field_.measure_on(is_shared_ ? common_ : parts[0]);
+    field_.begin(is_shared_ ? common_ : parts[0], condenses);
     open_.push_back(
         is_shared_
             ? shared_piece(0, 0)
@@ -44,19 +45,31 @@ Window* Descent::take_own(const Piece& piece) {
     const bool may_meet = field_.bound(parent, here, part, t0 - pad, t1 + pad, halves);
     if (field_.is_stopped()) left_ = 0;
     if (!may_meet) return nullptr;
-    if (!halves) field_.bound_curvature(part, t0 - pad, t1 + pad, here);
+    if (!halves && field_.is_crowded(here)) {
+        const bool may_part = !has_single_rays(part) && piece.depth < greatest_depth;
+        const Condensing done = field_.condense(part, t0, t1, may_part, here);
+        if (done == Condensing::condensed && field_.is_below(here)) return nullptr;
+        if (done == Condensing::too_large && divisible) {
+            if (may_part && 2 * width_at(part, t1) > t1 - t0) {
+                part_up(piece);
+            } else {
+                halve(piece);
+            }
+            return nullptr;
+        }
+    }
+    if (!halves && !here.is_condensed) field_.bound_curvature(part, t0 - pad, t1 + pad, here);
 
     const bool divides = halves || (divisible && field_.is_too_curved(here, t1 - t0));
     const bool parts_there = has_parts(piece);
     // Where the rays are farther apart than the stretch is long, to halve it says less of each of
     // them than to part them.
     if (divides && !(parts_there && width_at(part, t1) > t1 - t0)) {
-        const double middle = 0.5 * (t0 + t1);
-        open_.push_back({.begin = middle, .end = t1, .part = part, .depth = piece.depth + 1});
-        open_.push_back({.begin = t0, .end = middle, .part = part, .depth = piece.depth + 1});
+        halve(piece);
         return nullptr;
     }
-    const bool parts_differ = !has_single_rays(part) && here.size() >= parts_elements &&
+    const bool parts_differ = !has_single_rays(part) && !here.is_condensed &&
+                              here.size() >= parts_elements &&
                               width_at(part, t1) > parts_apart * (t1 - t0);
     if (parts_there && (divides || parts_differ)) {
         part_up(piece);
@@ -64,6 +77,14 @@ Window* Descent::take_own(const Piece& piece) {
     }
     part_ = part;
     return &field_.open(here, part, t0, t1);
+}
+
+void Descent::halve(const Piece& piece) {
+    const double middle = 0.5 * (piece.begin + piece.end);
+    open_.push_back(
+        {.begin = middle, .end = piece.end, .part = piece.part, .depth = piece.depth + 1});
+    open_.push_back(
+        {.begin = piece.begin, .end = middle, .part = piece.part, .depth = piece.depth + 1});
 }
 
 void Descent::part_up(const Piece& piece) {

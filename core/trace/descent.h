@@ -37,8 +37,9 @@ class Descent {
     // Begins at the front. parts[0] is the bundle; if there are more, each ray of one that has none
     // may be a part of its own, whose axis is that of the ray in `rays`. When `budget` stretches
     // have been bounded, one window for all rays that is not `coarse_usable` and begins at 0 is the
-    // last. Both arrays have to stay.
-    void begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget);
+    // last. Both arrays have to stay. With `condenses` windows where elements are crowded may be condensed.
+    void begin(std::span<const BundlePart> parts, const RayColumns& rays, int budget,
+               bool condenses = false);
 
     // The next window, until it is asked again, and part() is whom it is for; null: there is none.
     // f < 0 certainly holds on the parts of span() between windows. Which there are depends on
@@ -112,8 +113,9 @@ class Descent {
     Window* take_shared(const Piece& piece);
     Window* take_own(const Piece& piece);
     Window* give_up();
-    // Those of fewer rays.
+    // Those of fewer rays; or of half the length.
     void part_up(const Piece& piece);
+    void halve(const Piece& piece);
 
     [[nodiscard]] static bool is_divisible(const Piece& piece) {
         const double middle = 0.5 * (piece.begin + piece.end);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/field/condensed.inl"
 #include "core/trace/field_lanes.inl"
 #include "core/trace/packet_lanes.inl"
 
@@ -127,11 +128,17 @@ HWY_INLINE void add_fine(const Window& window, const Vec3v<D> (&p)[n],
     }
 }
 
-// `open`: what f may be off by where feet are to be proved.
+// `open`: what f may be off by where feet are to be proved. Of many the sums of some are added up.
 template <Shape shape, KernelKind kind>
 HWY_INLINE void add_float_group(F d, const BundleEntry<float>* entry, std::uint32_t count,
-                                const Vec3v<F>& p, V<F>& sum, V<F>& open) {
+                                const Vec3v<F>& p, V<F>& total, V<F>& open) {
+    V<F> sum = hn::Zero(d);
+    std::uint32_t added = 0;
     for (const auto* const end = entry + count; entry != end; ++entry) {
+        if (++added % float_sum_length == 0) {
+            total = hn::Add(total, sum);
+            sum = hn::Zero(d);
+        }
         if constexpr (proves_feet<shape>) {
             if (any_proof(entry)) {
                 sum = hn::MulAdd(hn::Set(d, entry->strength),
@@ -150,6 +157,7 @@ HWY_INLINE void add_float_group(F d, const BundleEntry<float>* entry, std::uint3
         }
         sum = hn::MulAdd(hn::Set(d, entry->strength), LanesOf<kind>::at(d, s).k, sum);
     }
+    total = hn::Add(total, sum);
 }
 
 // Of the first n halves of a vector of floats, in double: n <= halves.
@@ -339,6 +347,12 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
                            HWY_ATTR { p[half] = place(task.window, ray[half], enclosed[half].m); });
         evaluate_fine(task.window, task.threshold, task.unit, task.has_joined, p, direction, value,
                       branches);
+        if (task.window.along != nullptr) {
+            for_each_of<n>([&](auto half) HWY_ATTR {
+                const V<D> tau = hn::Sub(enclosed[half].m, hn::Set(d, task.window.middle));
+                add_condensed(d, *task.window.along, tau, value[half].f, value[half].slope);
+            });
+        }
         for_each_of<n>([&](auto half) HWY_ATTR {
             enclosed[half].take(task, value[half], branches[half], reach);
         });

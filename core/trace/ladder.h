@@ -14,6 +14,7 @@ enum class Rung : std::uint8_t {
     enclose,
     enclose_more,
     about_root,
+    walk_along,
     walk_again,
     settle,
     alone_near,
@@ -30,7 +31,7 @@ struct RungFacts {
     std::string_view next;  // for a ray that it leaves open
 };
 
-// In order. The first five are PacketTracer's (core/trace/packet.cpp), the sixth to eighth one ray's
+// In order. The first six are PacketTracer's (core/trace/packet.cpp), the next three one ray's
 // (core/trace/methods/proved.cpp), the last the door's (core/trace/trace.cpp).
 inline constexpr std::array ladder{
     RungFacts{Rung::walk, "walk",
@@ -43,6 +44,8 @@ inline constexpr std::array ladder{
               "the same, where what was left out hid a line's side", "about_root, then walk_again"},
     RungFacts{Rung::about_root, "about_root", "the same, bounded about that root of that ray",
               "double, sums compensated", "the same, where rounding hid it", "settle"},
+    RungFacts{Rung::walk_along, "walk_along", "of a crowd, next to all, as one polynomial", "double",
+              "what walk and enclose do", "alone_near"},
     RungFacts{Rung::walk_again, "walk_again", "of the list, next to all", "double",
               "what walk and enclose do", "alone_near"},
     RungFacts{Rung::settle, "settle", "near the root, nothing left out", "intervals",

@@ -38,9 +38,18 @@ void PacketTracer::take(const RayBundle& rays, bool in_parts) {
 
 // Of the hits whose t lies in the window: in float, and in double where that is wanted or float
 // loses the direction. Of how many it is known now.
-std::size_t PacketTracer::surface_in(const Window& window, const BundlePart& part,
-                                     const Field& field, double limit, BundleSurfaces& surfaces,
-                                     Cancellation& stop) {
+std::size_t PacketTracer::surface_in(Window& window, const BundlePart& part, const Field& field,
+                                     double limit, BundleSurfaces& surfaces, Cancellation& stop) {
+    if (window.condensed != nullptr) {
+        const auto hit_here = [&](std::size_t k) {
+            return lanes_.state[k] == Lanes::hit && lanes_.t[k] >= window.begin &&
+                   lanes_.t[k] < window.end;
+        };
+        std::size_t k = part.first;
+        while (k < part.end && !hit_here(k)) ++k;
+        if (k == part.end) return 0;
+        descent_.field().enter(window);
+    }
     if (window.coarse_usable) {
         const SeenSurfaces looked =
             packet_steps().look(window, field, descent_.field().unit(), limit, lanes_, part.first,
@@ -110,7 +119,8 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     descent_.begin(parts_, lanes_.rays,
                    parts_.size() == 1 ? budget + budget_of_part
                                       : budget + static_cast<int>(parts_.size()) * budget_of_part +
-                                            budget_of_rays);
+                                            budget_of_rays,
+                   true);
     const auto wanted = [&](const BundlePart& part, double, double) {
         return any(part, Lanes::walking);
     };
@@ -201,10 +211,15 @@ bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
     if (stop.requested()) return false;
     if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) return false;
 
-    descent_.field().complete(window);
-    enclose(window, part, job);
-    if (any(part, Lanes::hidden)) enclose_more(window, part, job);
+    if (window.condensed == nullptr) {
+        descent_.field().complete(window);
+        enclose(window, part, job);
+        if (any(part, Lanes::hidden)) enclose_more(window, part, job);
+    } else {
+        enclose_condensed(window, part, job);
+    }
     if (stop.requested()) return false;
+    if (window.condensed != nullptr && any(part, Lanes::doubtful)) walk_along(part, job);
     if (any(part, Lanes::doubtful)) walk_again(part, job);
     return !stop.requested();
 }
@@ -216,6 +231,7 @@ void PacketTracer::walk(const Window& window, const BundlePart& part, Job& job) 
     job.counts.evaluations += walked.steps;
     job.counts.element_evaluations +=
         walked.steps * window.strong.size + walked.close_steps * window.weak.size;
+    if (window.condensed != nullptr) job.counts.element_evaluations += window.condensed->elements;
 }
 
 void PacketTracer::enclose_lanes(const Window& in, double left_out, std::size_t first,
@@ -230,6 +246,15 @@ void PacketTracer::enclose_lanes(const Window& in, double left_out, std::size_t 
 
 void PacketTracer::enclose(const Window& window, const BundlePart& part, Job& job) {
     enclose_lanes(window, 0, part.first, part.end, Lanes::hidden, Lanes::hidden, job);
+}
+
+// What was walked to in a polynomial, by the elements themselves.
+void PacketTracer::enclose_condensed(const Window& window, const BundlePart& part, Job& job) {
+    const Window& more = descent_.field().full_mixed();
+    enclose_lanes(more, window.walk_left_out, part.first, part.end, Lanes::hidden, Lanes::doubtful,
+                  job);
+    about_roots(std::max(window.walk_left_out, more.fine_bounds.above + more.fine_bounds.below),
+                part, job);
 }
 
 // What the window's own fine list leaves open, with one that leaves out next to nothing.
@@ -264,6 +289,22 @@ void PacketTracer::about_roots(double left_out, const BundlePart& part, Job& job
         if (lanes_.state[k] != Lanes::undecided) continue;
         lanes_.t_lo[k] = bracket.lo;
         lanes_.t_hi[k] = bracket.hi;
+    }
+}
+
+// Of a crowd: by each ray's own polynomial.
+void PacketTracer::walk_along(const BundlePart& part, Job& job) {
+    Counts& counts = job.counts;
+    for (std::size_t k = part.first; k < part.end; ++k) {
+        if (lanes_.state[k] != Lanes::doubtful) continue;
+        if (counts.stop.requested()) return;
+        const Window* const along =
+            descent_.field().along(lanes_.rays.origin(k, part.origin), lanes_.rays[k]);
+        if (along == nullptr) return;
+        ++counts.climbers[Rung::walk_along];
+        counts.evaluations += packet_steps().walk_again(*along, descent_.field().threshold(), k,
+                                                        k + 1, lanes_, counts.stop);
+        enclose_lanes(*along, 0, k, k + 1, Lanes::undecided, Lanes::undecided, job);
     }
 }
 
@@ -306,12 +347,12 @@ void PacketTracer::surface(const Field& field, const ElementList& list, const Ra
         lanes_.state[k] = std::isfinite(m[k]) ? Lanes::hit : Lanes::unused;
         lanes_.t[k] = m[k];
     }
-    descent_.begin(parts_, lanes_.rays, std::numeric_limits<int>::max());
+    descent_.begin(parts_, lanes_.rays, std::numeric_limits<int>::max(), true);
     const auto wanted = [&](const BundlePart& part, double t0, double t1) {
         return std::any_of(m.begin() + part.first, m.begin() + part.end,
                            [=](double t) { return t >= t0 && t < t1 && t < limit; });
     };
-    while (const Window* const window = descent_.next(wanted)) {
+    while (Window* const window = descent_.next(wanted)) {
         surface_in(*window, descent_.part(), field, limit, surfaces, stop);
         if (stop.requested()) break;
     }

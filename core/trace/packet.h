@@ -71,8 +71,10 @@ class PacketTracer {
     bool climb(Window& window, const BundlePart& part, Job& job);
     void walk(const Window& window, const BundlePart& part, Job& job);
     void enclose(const Window& window, const BundlePart& part, Job& job);
+    void enclose_condensed(const Window& window, const BundlePart& part, Job& job);
     void enclose_more(const Window& window, const BundlePart& part, Job& job);
     void about_roots(double left_out, const BundlePart& part, Job& job);
+    void walk_along(const BundlePart& part, Job& job);
     void walk_again(const BundlePart& part, Job& job);
     // All of the part that walk are left to others, from the window on.
     void leave(const Window& window, const BundlePart& part);
@@ -80,7 +82,7 @@ class PacketTracer {
     void enclose_lanes(const Window& in, double left_out, std::size_t first, std::size_t end,
                        Lanes::State pinned, Lanes::State otherwise, Job& job);
 
-    std::size_t surface_in(const Window& window, const BundlePart& part, const Field& field,
+    std::size_t surface_in(Window& window, const BundlePart& part, const Field& field,
                            double limit, BundleSurfaces& surfaces, Cancellation& stop);
 
     Descent descent_;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/field/condensed.inl"
 #include "core/trace/field_lanes.inl"
 #include "core/trace/packet_lanes.inl"
 
@@ -269,9 +270,14 @@ SeenSurfaces look(const Window& window, const Field& field, double unit, double 
                                                defined);
             });
         }
+        double slope_error = bounds.slope;
+        if (window.condensed != nullptr) {
+            sum.gradient = gradient_of(d, *window.condensed, p);
+            slope_error = window.gradient_error;
+        }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));
         M<F> firm = hn::And(
-            defined, hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * bounds.slope))));
+            defined, hn::Gt(length, hn::Set(d, static_cast<float>(firm_share * slope_error))));
         const V<F> inverse = hn::Div(hn::Set(d, -1.0F), length);
         Vec3v<F> color;
         if (field.one_color) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/field/condensed.inl"
 #include "core/trace/field_lanes.inl"
 #include "core/trace/packet_lanes.inl"
 
@@ -112,7 +113,10 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
     branches.begin(zero, zero, zero);
     Walked walked;
     std::uint64_t work = N * stage.entries().size;  // of a step, at most
-    if constexpr (has_weak) work += N * stage.more_entries().size;
+    if constexpr (has_weak) {
+        work += N * stage.more_entries().size;
+        if (window.condensed != nullptr) work += N * Condensed::room / 16;
+    }
 
     for (std::size_t first = begin_lane; first < end_lane; first += N) {
         M<Tag> walking = lanes_in(d, S::takes, lanes, first, end_lane);
@@ -138,7 +142,15 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             }
             FieldValue<Tag> value = evaluate(d, stage.entries(), threshold, p, direction, branches);
             V<Tag> above = all_above, below = all_below, slope_error = all_slope_error;
+            if constexpr (!has_weak) {
+                if (window.along != nullptr) {
+                    add_condensed(d, *window.along, tau, value.f, value.slope);
+                }
+            }
             if constexpr (has_weak) {
+                if (window.condensed != nullptr) {
+                    add_condensed(d, *window.condensed, p, direction, value.f, value.slope);
+                }
                 const M<Tag> close = hn::And(
                     active, hn::Or(guessing,
                                    hn::Not(hn::Lt(value.f, hn::Mul(c(-S::far_below), all_above)))));
