@@ -38,7 +38,7 @@ constexpr double u_float = 0x1p-22;  // of sums in float, as add_rest wants it
 constexpr std::size_t crowd = 128;
 // For a walk through a crowd elements below this multiple of the fine cut are left out; those that enclose its
 // roots are above that one: the sum of what many leave out is far more than what each does.
-constexpr double crowd_cut_multiple = 0x1p10, crowd_fine_cut_multiple = 0x1p-6;
+constexpr double crowd_cut_multiple = 0x1p8, crowd_fine_cut_multiple = 0x1p-6;
 
 // And until what is only known of |f'|, near the axes of circles, could change f by no more than
 // this share of T; but not below this share of the least width.
@@ -332,7 +332,7 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = false;
+    w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = has_along_ = false;
 
     w.condensed = nullptr;
     opened_condensed_ = here.is_condensed;
@@ -464,15 +464,10 @@ const Window& BundleField::full() {
     return full_;
 }
 
-// Of clusters the members are bounded in float.
-const Window& BundleField::full_mixed() {
-    if (!opened_condensed_ && !(list_.in_clusters && opened_->is_local)) return full();
-    if (has_full_mixed_) return full_mixed_;
-    has_full_mixed_ = true;
-    Bounded& finer = full_bounded_;
-    const double cut = opened_condensed_ ? fine_cut_ * crowd_fine_cut_multiple : full_cut_;
-    const double t0 = opened_on_.begin - pad_of(opened_on_.begin, opened_on_.end),
-                 t1 = opened_on_.end + pad_of(opened_on_.begin, opened_on_.end);
+// The list's elements on the window that is open, those above the cut, in float.
+void BundleField::bound_opened(double cut, Bounded& finer) {
+    const double pad = pad_of(opened_on_.begin, opened_on_.end);
+    const double t0 = opened_on_.begin - pad, t1 = opened_on_.end + pad;
     finer.local_middle = window_.middle;
     if (list_.in_clusters) {
         bound(opened_on_, cut, list_, true, full_clusters_);
@@ -487,7 +482,17 @@ const Window& BundleField::full_mixed() {
                                    finer.active, finer.local);
     }
     finer.is_local = true;
-    bound_curvature(opened_part_, t0, t1, finer);
+}
+
+// Of clusters the members are bounded in float.
+const Window& BundleField::full_mixed() {
+    if (!opened_condensed_ && !(list_.in_clusters && opened_->is_local)) return full();
+    if (has_full_mixed_) return full_mixed_;
+    has_full_mixed_ = true;
+    Bounded& finer = full_bounded_;
+    bound_opened(opened_condensed_ ? fine_cut_ * crowd_fine_cut_multiple : full_cut_, finer);
+    const double pad = pad_of(opened_on_.begin, opened_on_.end);
+    bound_curvature(opened_part_, opened_on_.begin - pad, opened_on_.end + pad, finer);
     take_opened(finer,
                 opened_condensed_
                     ? FloatCuts{fine_cut_ * float_cut_multiple, fine_cut_, fine_cut_ * worst_in_crowd}
@@ -497,7 +502,10 @@ const Window& BundleField::full_mixed() {
 }
 
 const Window* BundleField::along(const Vec3d& origin, const Vec3d& direction) {
-    full_mixed();
+    if (!has_along_) {
+        bound_opened(full_cut_, along_bounded_);
+        has_along_ = true;
+    }
     Window& w = about_root_;
     w.begin = window_.begin;
     w.middle = window_.middle;
@@ -508,14 +516,14 @@ const Window* BundleField::along(const Vec3d& origin, const Vec3d& direction) {
     w.fine.clear();
     w.fine_in_float.clear();
     CondensedRay& ray = condensed_ray_;
-    if (!bundle_steps().condense_ray(*field_, full_bounded_.local, origin, direction, w.begin, w.end,
+    if (!bundle_steps().condense_ray(*field_, along_bounded_.local, origin, direction, w.begin, w.end,
                                      scale_, threshold_, ray)) {
         return nullptr;
     }
     w.along = &ray;
     w.rise = ray.rise;
     w.fall = ray.fall;
-    const LeftOut& left_out = full_bounded_.left_out;
+    const LeftOut& left_out = along_bounded_.left_out;
     w.fine_bounds = {left_out.above * more + ray.error, left_out.below * more + ray.error,
                      ray.slope_error};
     w.fine_usable = w.is_complete = true;

@@ -173,6 +173,7 @@ class BundleField {
     void enter(const Bounded& bounded, const BundlePart& part, Window& window);
     void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
                   const FloatCuts& float_cuts, Window& window);
+    void bound_opened(double cut, Bounded& finer);
     void take_opened(const Bounded& bounded, const FloatCuts& float_cuts, Window& window);
 
     const Field* field_ = nullptr;
@@ -188,8 +189,9 @@ class BundleField {
     Window window_;
     Bounded full_bounded_, about_root_bounded_;
     Window full_, full_mixed_, about_root_;
+    Bounded along_bounded_;
     CondensedRay condensed_ray_;
-    bool has_full_ = false, has_full_mixed_ = false;  // those are of the window
+    bool has_full_ = false, has_full_mixed_ = false, has_along_ = false;  // those are of the window
 
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double fine_cut_ = 0, full_cut_ = 0;

@@ -122,13 +122,13 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
     const F d;
     const std::size_t N = hn::Lanes(d), degree = condensed.degree;
     const std::size_t count = (degree + 1) * (degree + 2) * (degree + 3) / 6;
-    constexpr std::size_t blocks_at_once = 8;
+    constexpr std::size_t blocks_at_once = 4;
     alignas(64) float sums[Condensed::room * (HWY_MAX_BYTES / sizeof(float))];
     std::array<double, Condensed::room> total{};
     std::fill_n(sums, count * N, 0.0F);
     const auto add_to_total = [&]() HWY_ATTR {
         for (std::size_t k = 0; k < count; ++k) {
-            total[k] += sum_of(hn::Load(d, sums + k * N));
+            total[k] += double{hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums + k * N)))};
             hn::Store(hn::Zero(d), d, sums + k * N);
         }
     };
@@ -167,19 +167,37 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
         expand(degree, x[2], inverse, w);
         float* sum = sums;
         for (std::size_t j = 0; j <= degree; ++j) {
-            V<F> first_two[condensed_block];
+            V<F> first_two[condensed_block], of_next[condensed_block];
+            for (V<F>& x : of_next) x = hn::Zero(d);
             for (std::size_t b = 0; b < condensed_block; ++b) u.g[j][b] = hn::Mul(u.g[j][b], weight[b]);
-            for (std::size_t k = 0; k + j <= degree; ++k) {
+            // Two rows at a time, so that what stands along w is loaded once for both.
+            for (std::size_t k = 0; k + j <= degree; k += 2) {
+                const std::size_t row = degree - j - k + 1;
+                float* const next_row = sum + row * N;
+                const bool has_next = k + 1 + j <= degree;
                 for (std::size_t b = 0; b < condensed_block; ++b) {
                     first_two[b] = hn::Mul(u.g[j][b], v.g[k][b]);
+                    if (has_next) of_next[b] = hn::Mul(u.g[j][b], v.g[k + 1][b]);
                 }
-                for (std::size_t l = 0; l + k + j <= degree; ++l, sum += N) {
-                    V<F> here = hn::Load(d, sum);
+                const std::size_t in_both = has_next ? row - 1 : 0;
+                for (std::size_t l = 0; l < in_both; ++l) {
+                    V<F> here = hn::Load(d, sum + l * N), next = hn::Load(d, next_row + l * N);
+                    for (std::size_t b = 0; b < condensed_block; ++b) {
+                        const V<F> factor = w.g[l][b];
+                        here = hn::MulAdd(first_two[b], factor, here);
+                        next = hn::MulAdd(of_next[b], factor, next);
+                    }
+                    hn::Store(here, d, sum + l * N);
+                    hn::Store(next, d, next_row + l * N);
+                }
+                for (std::size_t l = in_both; l < row; ++l) {
+                    V<F> here = hn::Load(d, sum + l * N);
                     for (std::size_t b = 0; b < condensed_block; ++b) {
                         here = hn::MulAdd(first_two[b], w.g[l][b], here);
                     }
-                    hn::Store(here, d, sum);
+                    hn::Store(here, d, sum + l * N);
                 }
+                sum = next_row + in_both * N;
             }
         }
         if ((blocks + 1) % blocks_at_once == 0) add_to_total();
@@ -188,7 +206,7 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
     for (std::size_t k = 0; k < count; ++k) {
         condensed.coefficient[k] = static_cast<float>(total[k]);
     }
-    return blocks_at_once * condensed_block;
+    return blocks_at_once * condensed_block + 4;  // the lanes' sum
 }
 
 // Sums of |coefficient| a^(i+j) b^k over all terms, a and b how far the window goes, and of that times powers
@@ -247,7 +265,7 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
                     double threshold, bool may_part, Condensed& condensed) {
     static constexpr double cramer = 1.0865, u = 0x1p-24;
     // What the remainder may be, of T: little beside what far elements are left out for in a walk.
-    static constexpr double remainder_share = 0x1p-16;
+    static constexpr double remainder_share = 0x1p-17;
     constexpr std::size_t least_degree = 3;
     const auto [first, end] = near.first.of(group_of(Shape::point, KernelKind::blinn));
 
@@ -344,8 +362,9 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
     return all < 1e30 ? Condensing::condensed : Condensing::unfit;
 }
 
-// The sums of (1) and (2) of condensed.h for one variable. What c and x are off by in double, 2^-49 of |c - M|, of
-// the window's length and of w, is among the 64 roundings that everything is given.
+// The sums of (1) and (2) of condensed.h for one variable. What is given as roundings of everything, beside 6 k for
+// the k-th term and one for each summand, is for the exponent, 8 u s, and for the foot, 5 u |c - M|: with
+// s exp(-s / 2) < 0.75 and (q + A) 2 q exp(-q^2 / 2) < 4 they make less than 30 u |b| sqrt k.
 bool condense_ray(const Field& field, const LocalElements& near, const Vec3d& origin,
                   const Vec3d& direction, double begin, double end, double scale, double threshold,
                   CondensedRay& condensed) {
@@ -433,7 +452,8 @@ bool condense_ray(const Field& field, const LocalElements& near, const Vec3d& or
         power *= half;
     }
     const auto n = static_cast<double>(degree);
-    const double roundings = 64 * u * (n + 64 + static_cast<double>(last - first)) * std::exp(r * r);
+    const double summands = static_cast<double>((last - first) / hn::Lanes(d)) + 10;
+    const double roundings = u * (8 * n + 96 + summands) * std::exp(r * r) * 1.02;
     const double off = roundings * (root + whole) + threshold * (4 * u) + 1e-280;
     // Of derivatives the terms are n / half and n^2 / half^2 times as large at most; those of condensed.h less.
     const double per_length = std::max((4 * r + 2) * sharp, n / half);

@@ -87,7 +87,8 @@ std::string statistics_json(const RenderStatistics& s) {
         {"windows", skipping.windows},
         {"rays",
          {{"in_packets", skipping.rays},
-          {"doubtful_in_float", s.counts.climbers[Rung::walk_again]},
+          {"doubtful_in_float",
+           s.counts.climbers[Rung::walk_along] + s.counts.climbers[Rung::walk_again]},
           {"alone", skipping.rays_alone}}}};
     Json& ladder_json = json["ladder"] = Json::object();
     for (const RungFacts& rung : ladder) {

@@ -89,9 +89,8 @@ struct ShapeLanes<PointSkeleton> {
     static HWY_INLINE DistanceRange<Tag> distances(const Seen<Tag, shape>& e,
                                                    const Reach<hn::TFromD<Tag>>& s, V<Tag> error) {
         const Tag d;
-        const V<Tag> off = hn::Add(aside_of(d, e.magnitude, s), error);
         const FromAxis<Tag> c(e.v, s.axis);
-        return {at_least_0(hn::Sub(c.nearest(s.begin, s.end), off)), hn::Zero(d)};
+        return {nearest_of_rays(d, c, aside_of(d, e.magnitude, s), s, error), hn::Zero(d)};
     }
 
     // s = y + h^2, y measured along the ray's line and h across it. A ray of the bundle runs past the

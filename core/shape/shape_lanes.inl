@@ -168,6 +168,22 @@ struct FromAxis {
     }
 };
 
+// Its least distance from the rays' points of a stretch, which lie no farther than `aside` across the axis; along
+// it they are off by |(o - origin) . axis| <= spread radius and t |(d - axis) . axis| <= t spread^2, so by less
+// than spread aside. All of it is given `error`.
+template <class Tag>
+HWY_INLINE V<Tag> nearest_of_rays(Tag d, const FromAxis<Tag>& c, V<Tag> aside,
+                                  const Reach<hn::TFromD<Tag>>& s, V<Tag> error) {
+    constexpr auto widened = Margins<hn::TFromD<Tag>>::more;
+    const V<Tag> slip = hn::MulAdd(aside, hn::Set(d, s.spread * widened), error);
+    const V<Tag> before = hn::Sub(hn::Set(d, s.begin), c.along),
+                 after = hn::Sub(c.along, hn::Set(d, s.end));
+    const V<Tag> along = at_least_0(hn::Sub(hn::Max(before, after), slip));
+    const V<Tag> across =
+        at_least_0(hn::Sub(hn::Sqrt(c.across_square), hn::Add(aside, error)));
+    return hn::Sqrt(hn::MulAdd(across, across, square_of(along)));
+}
+
 template <class Tag>
 struct DistanceRange {
     V<Tag> near;

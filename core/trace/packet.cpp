@@ -253,8 +253,23 @@ void PacketTracer::enclose_condensed(const Window& window, const BundlePart& par
     const Window& more = descent_.field().full_mixed();
     enclose_lanes(more, window.walk_left_out, part.first, part.end, Lanes::hidden, Lanes::doubtful,
                   job);
-    about_roots(std::max(window.walk_left_out, more.fine_bounds.above + more.fine_bounds.below),
-                part, job);
+    for (std::size_t k = part.first; k < part.end; ++k) {
+        if (lanes_.state[k] != Lanes::hidden) continue;
+        if (job.counts.stop.requested()) return;
+        const Window* const along = condensed_along(k, part);
+        if (along == nullptr) {
+            lanes_.state[k] = Lanes::undecided;
+            continue;
+        }
+        ++job.counts.climbers[Rung::about_root];
+        lanes_.state[k] = Lanes::candidate;
+        enclose_lanes(*along, window.walk_left_out, k, k + 1, Lanes::undecided, Lanes::doubtful,
+                      job);
+    }
+}
+
+const Window* PacketTracer::condensed_along(std::size_t k, const BundlePart& part) {
+    return descent_.field().along(lanes_.rays.origin(k, part.origin), lanes_.rays[k]);
 }
 
 // What the window's own fine list leaves open, with one that leaves out next to nothing.
@@ -298,8 +313,7 @@ void PacketTracer::walk_along(const BundlePart& part, Job& job) {
     for (std::size_t k = part.first; k < part.end; ++k) {
         if (lanes_.state[k] != Lanes::doubtful) continue;
         if (counts.stop.requested()) return;
-        const Window* const along =
-            descent_.field().along(lanes_.rays.origin(k, part.origin), lanes_.rays[k]);
+        const Window* const along = condensed_along(k, part);
         if (along == nullptr) return;
         ++counts.climbers[Rung::walk_along];
         counts.evaluations += packet_steps().walk_again(*along, descent_.field().threshold(), k,

@@ -74,6 +74,7 @@ class PacketTracer {
     void enclose_condensed(const Window& window, const BundlePart& part, Job& job);
     void enclose_more(const Window& window, const BundlePart& part, Job& job);
     void about_roots(double left_out, const BundlePart& part, Job& job);
+    const Window* condensed_along(std::size_t k, const BundlePart& part);
     void walk_along(const BundlePart& part, Job& job);
     void walk_again(const BundlePart& part, Job& job);
     // All of the part that walk are left to others, from the window on.
