@@ -332,21 +332,26 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
                  derived_per_width = 2 * (sums.slope_per_width + 2 * A * sums.peak * sharp);
     const double off = grown * (common * sums.peak + 6 * u * A * derived) +
                        1.02 * (2 * sums.displaced + u * sums.bend) + R + 1e-30;
-    const double slope_off = grown * (common + 6 * u * n) * derived_per_width +
+    // And of m times its derivatives: 2 (q + 2 A) (y + 1) + 2 A, y = 2 A (q + 2 A), times it, and
+    // (q + 2 A)^2 <= 2 (q^2 + 4 A^2).
+    const double weighted = derived_per_width + (8 * A * (0.25 * sums.bend + 4 * A * A * sums.peak) +
+                                                 2 * A * sums.peak) *
+                                                    sharp;
+    const double slope_off = grown * (common * derived_per_width + 6 * u * weighted) +
                              1.02 * (sums.displaced_slope + 30 * u * sums.root_per_width) +
                              R * (n + 1) / rho + 1e-30;
     // By Cramer's bound; (2 q + 4 A)^2 exp(-q^2 / 2) + 2 < 24.
     const double bend_off = (24 * grown * (common + 6 * u * n) + 7.6 * sums.most_displaced + 40 * u) *
                                 sums.root_per_width * sharp * 1.02 +
                             R * (n + 1) * n / (rho * rho) + 1e-30;
-    // Evaluated by Horner's scheme, each term is multiplied and added to at most n + 3 times; of the slope three
-    // such sums make one.
+    // Evaluated by Horner's scheme, each term is multiplied and added to at most n + 3 times, and of the slope
+    // multiplied once more by a component and added to twice.
     const double per_aside = 1 / box.aside, per_along = 1 / box.along, s = box.spread;
     condensed.error = (off + (2 * n + 14) * u * (terms.all + threshold)) * 1.01;
     condensed.slope_error =
-        (slope_off + (6 * n + 24) * u * (terms.k * per_along + s * terms.ij * per_aside)) * 1.01;
+        (slope_off + (2 * n + 16) * u * (terms.k * per_along + s * terms.ij * per_aside)) * 1.01;
     condensed.gradient_error =
-        1.8 * (slope_off + (6 * n + 24) * u * (terms.k * per_along + terms.ij * per_aside));
+        1.8 * (slope_off + (2 * n + 16) * u * (terms.k * per_along + terms.ij * per_aside));
     const double middle_value = condensed.coefficient[0];
     condensed.most = middle_value + ((terms.all - std::abs(middle_value)) + off) * (1 + 0x1p-30);
     // d^2 P = d_w^2 P_ww + 2 d_w (d_u P_uw + d_v P_vw) + ...; 0.99 < d_w < 1 + 2^-48.
