@@ -252,9 +252,9 @@ Condensing BundleField::condense(const BundlePart& part, double t0, double t1, b
                                  Bounded& bounded) const {
     Condensed& condensed = bounded.condensed;
     const double middle = (0.5 * (t0 + t1) - bounded.local_middle) / unit_;
-    const Condensing done = bundle_steps().condense(
-        bounded.local, local_stretch(part, bounded.local_middle, t0, t1), middle, threshold_,
-        may_part, condensed);
+    const Condensing done =
+        bundle_steps().condense(bounded.local, local_stretch(part, bounded.local_middle, t0, t1),
+                                middle, threshold_, may_part, condensed);
     bounded.is_condensed = done == Condensing::condensed;
     if (!bounded.is_condensed) return done;
     const double per_unit = 1 / unit_;
@@ -345,9 +345,9 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
         w.strong.clear();
         w.weak.clear();
         const double slope = here.condensed.slope_error;
-        w.strong_bounds = w.coarse_bounds = {here.left_out.above * more + here.condensed.error,
-                                             here.left_out.below * more + here.condensed.error,
-                                             slope};
+        w.strong_bounds =
+            w.coarse_bounds = {here.left_out.above * more + here.condensed.error,
+                               here.left_out.below * more + here.condensed.error, slope};
         w.coarse_usable = true;
         return w;
     }
@@ -411,8 +411,7 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
                                  (1 + static_cast<double>(bounded.local.size() + 64) * 0x1p-22) /
                                  unit_;
             }
-            return sums.usable &&
-                   std::max(in_float.above, in_float.below) <= float_cuts.worst;
+            return sums.usable && std::max(in_float.above, in_float.below) <= float_cuts.worst;
         };
         double cut = float_cuts.greatest;
         while (!part_at(cut)) {
@@ -494,9 +493,9 @@ const Window& BundleField::full_mixed() {
     const double pad = pad_of(opened_on_.begin, opened_on_.end);
     bound_curvature(opened_part_, opened_on_.begin - pad, opened_on_.end + pad, finer);
     take_opened(finer,
-                opened_condensed_
-                    ? FloatCuts{fine_cut_ * float_cut_multiple, fine_cut_, fine_cut_ * worst_in_crowd}
-                    : float_cuts(fine_cut_ * full_mixed_cut_multiple),
+                opened_condensed_ ? FloatCuts{fine_cut_ * float_cut_multiple, fine_cut_,
+                                              fine_cut_ * worst_in_crowd}
+                                  : float_cuts(fine_cut_ * full_mixed_cut_multiple),
                 full_mixed_);
     return full_mixed_;
 }
@@ -516,8 +515,8 @@ const Window* BundleField::along(const Vec3d& origin, const Vec3d& direction) {
     w.fine.clear();
     w.fine_in_float.clear();
     CondensedRay& ray = condensed_ray_;
-    if (!bundle_steps().condense_ray(*field_, along_bounded_.local, origin, direction, w.begin, w.end,
-                                     scale_, threshold_, ray)) {
+    if (!bundle_steps().condense_ray(*field_, along_bounded_.local, origin, direction, w.begin,
+                                     w.end, scale_, threshold_, ray)) {
         return nullptr;
     }
     w.along = &ray;

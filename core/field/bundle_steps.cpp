@@ -17,22 +17,11 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{bound,
-                                   bound_clusters,
-                                   bound_curvature,
-                                   bound_across,
-                                   enter_local,
-                                   place_local,
-                                   bound_members,
-                                   bound_local,
-                                   bound_curvature_local,
-                                   bound_across_local,
-                                   condense,
-                                   condense_ray,
-                                   coarse,
-                                   coarse_local,
-                                   fine,
-                                   fine_in_float};
+    static const BundleSteps steps{
+        bound,        bound_clusters, bound_curvature, bound_across,          enter_local,
+        place_local,  bound_members,  bound_local,     bound_curvature_local, bound_across_local,
+        condense,     condense_ray,   coarse,          coarse_local,          fine,
+        fine_in_float};
     return steps;
 }
 

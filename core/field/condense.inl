@@ -55,10 +55,12 @@ HWY_INLINE SmoothSums smooth_sums(const LocalElements& near, std::size_t first, 
          narrowest = zero;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const M<F> valid = hn::FirstN(d, end - i);
-        const auto column = [&](const std::vector<float>& values)
-                                HWY_ATTR { return hn::IfThenElseZero(valid, hn::LoadU(d, &values[i])); };
-        const V<F> inverse = hn::Sqrt(column(near.inverse_square)), strength = hn::Abs(column(near.strength)),
-                   least = column(near.least), most = column(near.peak);
+        const auto column = [&](const std::vector<float>& values) HWY_ATTR {
+            return hn::IfThenElseZero(valid, hn::LoadU(d, &values[i]));
+        };
+        const V<F> inverse = hn::Sqrt(column(near.inverse_square)),
+                   strength = hn::Abs(column(near.strength)), least = column(near.least),
+                   most = column(near.peak);
         const Vec3v<F> c{hn::Sub(column(near.x), hn::Set(d, box.from.x)),
                          hn::Sub(column(near.y), hn::Set(d, box.from.y)),
                          hn::Sub(column(near.z), hn::Set(d, box.from.z))};
@@ -66,8 +68,7 @@ HWY_INLINE SmoothSums smooth_sums(const LocalElements& near, std::size_t first, 
             hn::Mul(hn::MulAdd(length_of(d, c), constant(d, 20 * 0x1.01p-24), common), inverse);
         const V<F> of_root = hn::Mul(strength, hn::Sqrt(most)), of_peak = hn::Mul(strength, most);
         const V<F> of_slope = hn::Mul(of_peak, hn::Add(hn::Sqrt(least), constant(d, 0.43)));
-        const V<F> of_bend =
-            hn::Mul(of_peak, hn::MulAdd(constant(d, 4), least, constant(d, 3.5)));
+        const V<F> of_bend = hn::Mul(of_peak, hn::MulAdd(constant(d, 4), least, constant(d, 3.5)));
         root = hn::Add(root, of_root);
         root_per_width = hn::MulAdd(of_root, inverse, root_per_width);
         peak = hn::Add(peak, of_peak);
@@ -146,9 +147,9 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
             V<F> square = hn::Zero(d);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const Vec3<float>& to = frame[axis];
-                const V<F> along = hn::MulAdd(
-                    cx, hn::Set(d, to.x),
-                    hn::MulAdd(cy, hn::Set(d, to.y), hn::Mul(cz, hn::Set(d, to.z))));
+                const V<F> along =
+                    hn::MulAdd(cx, hn::Set(d, to.x),
+                               hn::MulAdd(cy, hn::Set(d, to.y), hn::Mul(cz, hn::Set(d, to.z))));
                 x[axis][b] = hn::Mul(along, inverse[b]);
                 square = hn::MulAdd(x[axis][b], x[axis][b], square);
             }
@@ -168,8 +169,9 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
         float* sum = sums;
         for (std::size_t j = 0; j <= degree; ++j) {
             V<F> first_two[condensed_block], of_next[condensed_block];
-            for (V<F>& x : of_next) x = hn::Zero(d);
-            for (std::size_t b = 0; b < condensed_block; ++b) u.g[j][b] = hn::Mul(u.g[j][b], weight[b]);
+            for (V<F>& factor : of_next) factor = hn::Zero(d);
+            for (std::size_t b = 0; b < condensed_block; ++b)
+                u.g[j][b] = hn::Mul(u.g[j][b], weight[b]);
             // Two rows at a time, so that what stands along w is loaded once for both.
             for (std::size_t k = 0; k + j <= degree; k += 2) {
                 const std::size_t row = degree - j - k + 1;
@@ -183,9 +185,9 @@ HWY_NOINLINE std::size_t sum_up(const LocalElements& near, std::size_t first, st
                 for (std::size_t l = 0; l < in_both; ++l) {
                     V<F> here = hn::Load(d, sum + l * N), next = hn::Load(d, next_row + l * N);
                     for (std::size_t b = 0; b < condensed_block; ++b) {
-                        const V<F> factor = w.g[l][b];
-                        here = hn::MulAdd(first_two[b], factor, here);
-                        next = hn::MulAdd(of_next[b], factor, next);
+                        const V<F> along = w.g[l][b];
+                        here = hn::MulAdd(first_two[b], along, here);
+                        next = hn::MulAdd(of_next[b], along, next);
                     }
                     hn::Store(here, d, sum + l * N);
                     hn::Store(next, d, next_row + l * N);
@@ -228,7 +230,8 @@ HWY_INLINE TermSums term_sums(const Condensed& condensed, const Box& box) {
     const float* c = condensed.coefficient.data();
     for (std::size_t i = 0; i <= degree; ++i) {
         for (std::size_t j = 0; i + j <= degree; ++j) {
-            for (std::size_t k = 0; i + j + k <= degree; ++k) by[i + j][k] += std::fabs(double{*c++});
+            for (std::size_t k = 0; i + j + k <= degree; ++k)
+                by[i + j][k] += std::fabs(double{*c++});
         }
     }
     TermSums sums;
@@ -250,12 +253,15 @@ HWY_INLINE TermSums term_sums(const Condensed& condensed, const Box& box) {
 // Two directions across a third, orthonormal but for 2^-50.
 HWY_INLINE void frame_about(const Vec3d& axis, std::array<Vec3<float>, 3>& frame) {
     const double x = std::abs(axis.x), y = std::abs(axis.y), z = std::abs(axis.z);
-    const Vec3d least = x <= y && x <= z ? Vec3d{1, 0, 0} : y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+    const Vec3d least = x <= y && x <= z ? Vec3d{1, 0, 0}
+                        : y <= z         ? Vec3d{0, 1, 0}
+                                         : Vec3d{0, 0, 1};
     const Vec3d across = cross(axis, least);
     const Vec3d u = (1 / std::sqrt(dot(across, across))) * across;
     const Vec3d v = cross(axis, u);
     const auto narrow = [](const Vec3d& d) {
-        return Vec3<float>{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+        return Vec3<float>{static_cast<float>(d.x), static_cast<float>(d.y),
+                           static_cast<float>(d.z)};
     };
     frame = {narrow(u), narrow(v), narrow(axis)};
 }
@@ -270,7 +276,9 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
     const auto [first, end] = near.first.of(group_of(Shape::point, KernelKind::blinn));
 
     Box box;
-    const auto place = [&](double base, double axis) { return static_cast<float>(base + middle * axis); };
+    const auto place = [&](double base, double axis) {
+        return static_cast<float>(base + middle * axis);
+    };
     box.from = {place(stretch.base.x, stretch.axis.x), place(stretch.base.y, stretch.axis.y),
                 place(stretch.base.z, stretch.axis.z)};
     box.axis = stretch.axis;
@@ -334,16 +342,17 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
                        1.02 * (2 * sums.displaced + u * sums.bend) + R + 1e-30;
     // And of m times its derivatives: 2 (q + 2 A) (y + 1) + 2 A, y = 2 A (q + 2 A), times it, and
     // (q + 2 A)^2 <= 2 (q^2 + 4 A^2).
-    const double weighted = derived_per_width + (8 * A * (0.25 * sums.bend + 4 * A * A * sums.peak) +
-                                                 2 * A * sums.peak) *
-                                                    sharp;
+    const double weighted =
+        derived_per_width +
+        (8 * A * (0.25 * sums.bend + 4 * A * A * sums.peak) + 2 * A * sums.peak) * sharp;
     const double slope_off = grown * (common * derived_per_width + 6 * u * weighted) +
                              1.02 * (sums.displaced_slope + 30 * u * sums.root_per_width) +
                              R * (n + 1) / rho + 1e-30;
     // By Cramer's bound; (2 q + 4 A)^2 exp(-q^2 / 2) + 2 < 24.
-    const double bend_off = (24 * grown * (common + 6 * u * n) + 7.6 * sums.most_displaced + 40 * u) *
-                                sums.root_per_width * sharp * 1.02 +
-                            R * (n + 1) * n / (rho * rho) + 1e-30;
+    const double bend_off =
+        (24 * grown * (common + 6 * u * n) + 7.6 * sums.most_displaced + 40 * u) *
+            sums.root_per_width * sharp * 1.02 +
+        R * (n + 1) * n / (rho * rho) + 1e-30;
     // Evaluated by Horner's scheme, each term is multiplied and added to at most n + 3 times, and of the slope
     // multiplied once more by a component and added to twice.
     const double per_aside = 1 / box.aside, per_along = 1 / box.along, s = box.spread;
@@ -438,7 +447,8 @@ bool condense_ray(const Field& field, const LocalElements& near, const Vec3d& or
             hn::Mul(hn::GatherIndex(d, field.strength.data(), index), constant(scale));
         V<D> before = hn::Zero(d);
         V<D> here = hn::IfThenElseZero(
-            valid, hn::Mul(strength, exp2_minus(d, hn::Mul(square, constant(0x1.71547652b82fep+0)))));
+            valid,
+            hn::Mul(strength, exp2_minus(d, hn::Mul(square, constant(0x1.71547652b82fep+0)))));
         for (std::size_t k = 0; k <= degree; ++k) {
             double* const sum = sums + k * hn::Lanes(d);
             hn::Store(hn::Add(hn::Load(d, sum), here), d, sum);

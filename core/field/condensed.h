@@ -47,7 +47,7 @@ struct Condensed {
 
     std::size_t degree = 0;
     std::size_t elements = 0;
-    std::array<Vec3<float>, 3> frame;      // u, v, w; to nearest
+    std::array<Vec3<float>, 3> frame;     // u, v, w; to nearest
     std::array<float, room> coefficient;  // of u^i v^j w^k in ascending order of i, then j, then k
 
     // Of what is computed in float from it at a ray's point in the window: |f - P|, |f' - P'| and |grad f - grad P|.

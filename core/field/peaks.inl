@@ -221,8 +221,9 @@ void bound_cluster_group(const Clusters& clusters, const Stretch& stretch, doubl
         const V<D> size =
             hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), radius)),
                     constant(more));
-        const V<D> nearest = nearest_of_rays(d, FromAxis<D>(v, stretch.axis),
-                                             aside_of(d, size, reach), reach, error_of(d, size, reach));
+        const V<D> nearest =
+            nearest_of_rays(d, FromAxis<D>(v, stretch.axis), aside_of(d, size, reach), reach,
+                            error_of(d, size, reach));
         const V<D> near = at_least_0(hn::Sub(nearest, radius));
         const V<D> least =
             hn::Mul(hn::Mul(square_of(near), column(clusters.inverse_square)), constant(less));

@@ -179,8 +179,7 @@ HWY_INLINE V<Tag> nearest_of_rays(Tag d, const FromAxis<Tag>& c, V<Tag> aside,
     const V<Tag> before = hn::Sub(hn::Set(d, s.begin), c.along),
                  after = hn::Sub(c.along, hn::Set(d, s.end));
     const V<Tag> along = at_least_0(hn::Sub(hn::Max(before, after), slip));
-    const V<Tag> across =
-        at_least_0(hn::Sub(hn::Sqrt(c.across_square), hn::Add(aside, error)));
+    const V<Tag> across = at_least_0(hn::Sub(hn::Sqrt(c.across_square), hn::Add(aside, error)));
     return hn::Sqrt(hn::MulAdd(across, across, square_of(along)));
 }
 

@@ -13,6 +13,7 @@ enum class Rung : std::uint8_t {
     walk,
     enclose,
     enclose_more,
+    along_root,
     about_root,
     walk_along,
     walk_again,
@@ -31,7 +32,7 @@ struct RungFacts {
     std::string_view next;  // for a ray that it leaves open
 };
 
-// In order. The first six are PacketTracer's (core/trace/packet.cpp), the next three one ray's
+// In order. The first seven are PacketTracer's (core/trace/packet.cpp), the next three one ray's
 // (core/trace/methods/proved.cpp), the last the door's (core/trace/trace.cpp).
 inline constexpr std::array ladder{
     RungFacts{Rung::walk, "walk",
@@ -42,11 +43,12 @@ inline constexpr std::array ladder{
               "the two grid lines about the root", "enclose_more"},
     RungFacts{Rung::enclose_more, "enclose_more", "of the list, next to all", "the same",
               "the same, where what was left out hid a line's side", "about_root, then walk_again"},
+    RungFacts{Rung::along_root, "along_root", "of a crowd, next to all, as one polynomial",
+              "double", "the same", "about_root"},
     RungFacts{Rung::about_root, "about_root", "the same, bounded about that root of that ray",
-              "double, sums compensated; of a crowd a polynomial along the ray",
-              "the same, where rounding hid it", "settle"},
-    RungFacts{Rung::walk_along, "walk_along", "of a crowd, next to all, as one polynomial", "double",
-              "what walk and enclose do", "alone_near"},
+              "double, sums compensated", "the same, where rounding hid it", "settle"},
+    RungFacts{Rung::walk_along, "walk_along", "of a crowd, next to all, as one polynomial",
+              "double", "what walk and enclose do", "alone_near"},
     RungFacts{Rung::walk_again, "walk_again", "of the list, next to all", "double",
               "what walk and enclose do", "alone_near"},
     RungFacts{Rung::settle, "settle", "near the root, nothing left out", "intervals",

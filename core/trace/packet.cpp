@@ -117,9 +117,9 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     counts.skipping.rays += rays.count;
     Job job{field, settings, surfaces, exact_limit(field, rays.bundle), counts};
     descent_.begin(parts_, lanes_.rays,
-                   parts_.size() == 1 ? budget + budget_of_part
-                                      : budget + static_cast<int>(parts_.size()) * budget_of_part +
-                                            budget_of_rays,
+                   parts_.size() == 1
+                       ? budget + budget_of_part
+                       : budget + static_cast<int>(parts_.size()) * budget_of_part + budget_of_rays,
                    true);
     const auto wanted = [&](const BundlePart& part, double, double) {
         return any(part, Lanes::walking);
@@ -257,15 +257,13 @@ void PacketTracer::enclose_condensed(const Window& window, const BundlePart& par
         if (lanes_.state[k] != Lanes::hidden) continue;
         if (job.counts.stop.requested()) return;
         const Window* const along = condensed_along(k, part);
-        if (along == nullptr) {
-            lanes_.state[k] = Lanes::undecided;
-            continue;
-        }
-        ++job.counts.climbers[Rung::about_root];
+        if (along == nullptr) break;
+        ++job.counts.climbers[Rung::along_root];
         lanes_.state[k] = Lanes::candidate;
-        enclose_lanes(*along, window.walk_left_out, k, k + 1, Lanes::undecided, Lanes::doubtful,
-                      job);
+        enclose_lanes(*along, window.walk_left_out, k, k + 1, Lanes::hidden, Lanes::doubtful, job);
     }
+    about_roots(std::max(window.walk_left_out, more.fine_bounds.above + more.fine_bounds.below),
+                part, job);
 }
 
 const Window* PacketTracer::condensed_along(std::size_t k, const BundlePart& part) {

@@ -83,8 +83,8 @@ class PacketTracer {
     void enclose_lanes(const Window& in, double left_out, std::size_t first, std::size_t end,
                        Lanes::State pinned, Lanes::State otherwise, Job& job);
 
-    std::size_t surface_in(Window& window, const BundlePart& part, const Field& field,
-                           double limit, BundleSurfaces& surfaces, Cancellation& stop);
+    std::size_t surface_in(Window& window, const BundlePart& part, const Field& field, double limit,
+                           BundleSurfaces& surfaces, Cancellation& stop);
 
     Descent descent_;
     Lanes lanes_;

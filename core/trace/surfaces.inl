@@ -278,8 +278,7 @@ SeenSurfaces look(const Window& window, const Field& field, double unit, double 
             least_length = firm_condensed_share * window.gradient_error;
         }
         const V<F> length = hn::Sqrt(dot<F>(sum.gradient, sum.gradient));
-        M<F> firm = hn::And(
-            defined, hn::Gt(length, hn::Set(d, static_cast<float>(least_length))));
+        M<F> firm = hn::And(defined, hn::Gt(length, hn::Set(d, static_cast<float>(least_length))));
         const V<F> inverse = hn::Div(hn::Set(d, -1.0F), length);
         Vec3v<F> color;
         if (field.one_color) {

@@ -533,6 +533,95 @@ TEST(Packet, ARayAloneAmongManyIsAnsweredAsByAll) {
 
 // On fine grids packets often know the root but not on which side of a line it is. What is found
 // then is judged by the reference, and far fewer stay open than have a line so near.
+// Where hundreds of elements overlap, windows are walked through as polynomials: the same answers, on every
+// instruction set, and the reference says so.
+TEST(Packet, CrowdsAreAnsweredAsSingleRaysAre) {
+    const std::uint64_t seed = tools::announced_seed(76);
+    for (const std::string_view name : instruction_sets()) {
+        SCOPED_TRACE(std::string(name));
+        const tools::OnInstructionSet on(name);
+        Random random(seed);
+        const Proved proved;
+        PacketTracer packets;
+        int condensed = 0, rays_traced = 0, open = 0, hits = 0, misses = 0, judged = 0;
+        for (int trial = 0; trial < 6; ++trial) {
+            Scene scene;
+            const std::size_t count = trial % 2 == 0 ? 400 : 900;
+            const double width = trial < 3 ? 0.3 : 0.15;
+            for (std::size_t k = 0; k < count; ++k) {
+                Vec3d place;
+                do place = random.in_cube(1);
+                while (dot(place, place) > 1);
+                scene.elements.push_back({.skeleton = PointSkeleton{place},
+                                          .strength = random.chance(0.2) ? -1.0 : 1.0,
+                                          .width = width * random.uniform(0.9, 1.1)});
+            }
+            // About half of what it is inside.
+            scene.threshold = 0.6 * static_cast<double>(count) * std::pow(width, 3) * 1.33 *
+                              random.uniform(0.4, 0.7);
+            const Field field = compile(scene);
+            const ElementList list = all_elements(field);
+            const reference::ReferenceField exact(scene);
+            const double tolerance = 1e-6;
+            const PacketTracer::Settings settings{tolerance, 0.5 * tolerance * field.least_width};
+            for (int bundle = 0; bundle < 12; ++bundle) {
+                const Vec3d aim = 0.8 * random.in_cube(1);
+                const Vec3d from = 4.0 * unit(random.in_cube(1));
+                const double spread = std::pow(10.0, random.uniform(-3.5, -1.7));
+                const auto rays = bundle_around({from, aim - from}, spread, 64, random);
+                BundleIsolations found;
+                Counts counts;
+                packets.isolate(field, list, *rays, settings, found, nullptr, counts);
+                Descent descent;
+                if (descent.build(field, list, rays->bundle, tolerance)) {
+                    const BundlePart whole = [&] {
+                        BundlePart part = whole_of(rays->bundle);
+                        part.end = 64;
+                        return part;
+                    }();
+                    descent.begin({&whole, 1}, rays->columns(), 1000, true);
+                    const auto all = [](const BundlePart&, double, double) { return true; };
+                    while (const Window* const window = descent.next(all)) {
+                        condensed += window->condensed != nullptr;
+                    }
+                }
+                for (std::size_t k = 0; k < rays->size(); ++k) {
+                    ++rays_traced;
+                    open += found[k].status == Status::unresolved;
+                    if (found[k].status == Status::unresolved || k % 4 != 0) continue;
+                    const Isolation alone =
+                        proved.isolate(field, list, rays->ray(k), {.tolerance = tolerance}, counts);
+                    ASSERT_EQ(found[k].status, alone.status);
+                    (found[k].status == Status::hit ? hits : misses) += 1;
+                    if (found[k].status == Status::hit) {
+                        ASSERT_GE(found[k].t.lo, alone.t.lo);
+                        ASSERT_LE(found[k].t.hi, alone.t.hi);
+                    }
+                    if (k != 0) continue;
+                    Answer answer{found[k], {}};
+                    if (found[k].status == Status::hit) {
+                        answer.surface =
+                            proved.surface(field, list, rays->ray(k), midpoint(found[k].t), {});
+                    }
+                    const reference::Verdict verdict =
+                        check(exact, rays->ray(k), tolerance, answer);
+                    EXPECT_EQ(verdict.fault, reference::Fault::none) << word(verdict.fault);
+                    ++judged;
+                }
+            }
+        }
+        std::printf(
+            "%d windows condensed, %d rays, %d open, %d hits and %d misses compared, %d judged; "
+            "%s\n",
+            condensed, rays_traced, open, hits, misses, judged, std::string(name).c_str());
+        EXPECT_GT(condensed, 200);
+        EXPECT_GT(hits, 200);
+        EXPECT_GT(misses, 50);
+        EXPECT_GT(judged, 50);
+        EXPECT_LE(open, rays_traced / 50);
+    }
+}
+
 TEST(Packet, RootsBesideGridLinesAreSettled) {
     const Proved proved;
     int judged = 0, unresolved = 0;
