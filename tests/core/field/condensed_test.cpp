@@ -45,7 +45,8 @@ struct Crowd {
     LocalStretch stretch;
     Vec3d axis;
 
-    Crowd(std::size_t count, double half, double radius, double spread, bool alike, Random& random) {
+    Crowd(std::size_t count, double half, double radius, double spread, bool alike,
+          Random& random) {
         axis = unit(unit(random.in_cube(1)));
         stretch = {axis, {}, spread, radius, -half, half, random.uniform(2, 40)};
         const double aside = radius + (stretch.t_offset + half) * spread;
@@ -64,7 +65,8 @@ struct Crowd {
             const Vec3d c{near.x[k], near.y[k], near.z[k]};
             const Vec3d off = c - std::clamp(dot(c, axis), -half, half) * axis;
             const double away = std::max(std::sqrt(dot(off, off)) - aside, 0.0) * (1 - 1e-6);
-            near.least[k] = static_cast<float>(away * away * double{near.inverse_square[k]} * (1 - 1e-6));
+            near.least[k] =
+                static_cast<float>(away * away * double{near.inverse_square[k]} * (1 - 1e-6));
             near.peak[k] = static_cast<float>(std::exp(-double{near.least[k]}) * (1 + 1e-6));
         }
         // What stands beyond the last one is nobody's.
@@ -110,9 +112,11 @@ Derivatives value_of(const Condensed& condensed, const Vec3d& p, const Vec3d& di
                 const std::size_t powers[] = {i, j, k};
                 Exact term = condensed.coefficient[at++], slope = 0;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    Exact others = powers[axis] == 0 ? 0 : static_cast<Exact>(powers[axis]) * d[axis];
+                    Exact others =
+                        powers[axis] == 0 ? 0 : static_cast<Exact>(powers[axis]) * d[axis];
                     for (std::size_t other = 0; other < 3; ++other) {
-                        const std::size_t power = powers[other] - (other == axis && powers[axis] > 0);
+                        const std::size_t power =
+                            powers[other] - (other == axis && powers[axis] > 0);
                         others *= std::pow(x[other], static_cast<Exact>(power));
                     }
                     slope += term * others;
@@ -144,11 +148,12 @@ TEST(Condensed, IsAsCloseToItsElementsAsItSays) {
             const double half = std::pow(10.0, random.uniform(-2, 0));
             const double radius = random.chance(0.3) ? 0 : half * random.uniform(0.05, 1);
             const double spread = half * random.uniform(1e-3, 2e-2);
-            const Crowd crowd(100 + random.below(700), half, radius, spread, random.chance(0.5), random);
+            const Crowd crowd(100 + random.below(700), half, radius, spread, random.chance(0.5),
+                              random);
             const double threshold = 10;
             Condensed condensed;
-            const Condensing done = bundle_steps().condense(crowd.near, crowd.stretch, 0, threshold,
-                                                            false, condensed);
+            const Condensing done =
+                bundle_steps().condense(crowd.near, crowd.stretch, 0, threshold, false, condensed);
             too_large += done != Condensing::condensed;
             if (done != Condensing::condensed) continue;
             ++condensed_ones;
@@ -158,7 +163,8 @@ TEST(Condensed, IsAsCloseToItsElementsAsItSays) {
             for (int n = 0; n < 24; ++n) {
                 const auto [middle, direction] = crowd.ray(random);
                 // Also at the very ends.
-                const double tau = n < 4 ? (n % 2 == 0 ? half : -half) : random.uniform(-half, half);
+                const double tau =
+                    n < 4 ? (n % 2 == 0 ? half : -half) : random.uniform(-half, half);
                 const Vec3d p = middle + tau * direction;
                 const Derivatives truth = crowd.sum(p, direction);
                 const Derivatives found = value_of(condensed, p, direction);
@@ -202,7 +208,8 @@ TEST(Condensed, RemaindersAreNotBoundedForNothing) {
         for (int n = 0; n < 50; ++n) {
             const auto [middle, direction] = crowd.ray(random);
             const Vec3d p = middle + (n % 2 == 0 ? 0.7 : -0.7) * direction;
-            const Exact off = std::abs(crowd.sum(p, direction).f - value_of(condensed, p, direction).f);
+            const Exact off =
+                std::abs(crowd.sum(p, direction).f - value_of(condensed, p, direction).f);
             greatest = std::max(greatest, static_cast<double>(off) / condensed.error);
         }
     }
@@ -249,8 +256,9 @@ TEST(Condensed, ARaysPolynomialIsAsCloseAsItSays) {
             }
             for (std::size_t k = count; k < near.element.size(); ++k) near.element[k] = 1 << 30;
             CondensedRay condensed;
-            if (!bundle_steps().condense_ray(field, near, origin, direction, begin, end, field.scale,
-                                             field.threshold * field.scale, condensed)) {
+            if (!bundle_steps().condense_ray(field, near, origin, direction, begin, end,
+                                             field.scale, field.threshold * field.scale,
+                                             condensed)) {
                 continue;
             }
             ++condensed_ones;
