@@ -269,7 +269,7 @@ HWY_INLINE void frame_about(const Vec3d& axis, std::array<Vec3<float>, 3>& frame
 // `middle` is the window's, relative to the elements' place, as in enter_from_local.
 Condensing condense(const LocalElements& near, const LocalStretch& stretch, double middle,
                     double threshold, bool may_part, Condensed& condensed) {
-    static constexpr double cramer = 1.0865, u = 0x1p-24;
+    static constexpr double cramer = 1.0865 * 1.02, u = 0x1p-24;
     // What the remainder may be, of T: little beside what far elements are left out for in a walk.
     static constexpr double remainder_share = 0x1p-17;
     constexpr std::size_t least_degree = 3;
@@ -329,7 +329,7 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
     const double summands = static_cast<double>(sum_up(near, first, end, box, condensed));
     const TermSums terms = term_sums(condensed, box);
 
-    // The bounds of condensed.h; 1.02 for what is displaced being nearer than the peak says.
+    // The bounds of condensed.h; 1.02, as in `cramer`, for what is displaced being nearer than the peak says.
     const auto n = static_cast<double>(degree);
     const double R = remainder(r, degree);
     // Terms of degree m are off by 6 m u and by what is common to all; the sum of m times the majorant's terms is
