@@ -254,7 +254,7 @@ Condensing BundleField::condense(const BundlePart& part, double t0, double t1, b
     const double middle = (0.5 * (t0 + t1) - bounded.local_middle) / unit_;
     const Condensing done =
         bundle_steps().condense(bounded.local, local_stretch(part, bounded.local_middle, t0, t1),
-                                middle, threshold_, may_part, condensed);
+                                middle, threshold_, may_part, Closeness::rough, condensed);
     bounded.is_condensed = done == Condensing::condensed;
     if (!bounded.is_condensed) return done;
     const double per_unit = 1 / unit_;
@@ -337,22 +337,39 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.condensed = nullptr;
     opened_condensed_ = here.is_condensed;
     if (here.is_condensed) {
-        w.condensed = &here.condensed;
-        w.walk_left_out = (here.left_out.above + here.left_out.below) * more;
-        // |grad F| is 2 q F / w, and what is left out q < 8, or next to nothing.
-        w.gradient_error =
-            here.condensed.gradient_error + 16 * w.walk_left_out * (unit_ / least_width_);
+        take_condensed(here, here.condensed, w);
+        w.is_rough = true;
         w.strong.clear();
         w.weak.clear();
-        const double slope = here.condensed.slope_error;
-        w.strong_bounds =
-            w.coarse_bounds = {here.left_out.above * more + here.condensed.error,
-                               here.left_out.below * more + here.condensed.error, slope};
         w.coarse_usable = true;
         return w;
     }
     enter(here, part, w);
     return w;
+}
+
+void BundleField::take_condensed(const Bounded& here, const Condensed& condensed, Window& w) const {
+    w.condensed = &condensed;
+    w.walk_left_out = (here.left_out.above + here.left_out.below) * more;
+    // |grad F| is 2 q F / w, and what is left out q < 8, or next to nothing.
+    w.gradient_error = condensed.gradient_error + 16 * w.walk_left_out * (unit_ / least_width_);
+    w.strong_bounds =
+        w.coarse_bounds = {here.left_out.above * more + condensed.error,
+                           here.left_out.below * more + condensed.error, condensed.slope_error};
+    const double per_unit = 1 / unit_;
+    w.rise = condensed.rise * (per_unit * per_unit);
+    w.fall = condensed.fall * (per_unit * per_unit);
+}
+
+void BundleField::condense_closely(Window& w) {
+    const Bounded& here = *opened_;
+    const LocalStretch on = local_stretch(opened_part_, here.local_middle, w.begin, w.end);
+    const double middle = (w.middle - here.local_middle) / unit_;
+    const Condensing done = bundle_steps().condense(here.local, on, middle, threshold_, false,
+                                                    Closeness::close, close_);
+    w.coarse_usable = done == Condensing::condensed;
+    w.is_rough = false;
+    if (w.coarse_usable) take_condensed(here, close_, w);
 }
 
 void BundleField::enter(Window& window) { enter(*opened_, opened_part_, window); }

@@ -92,7 +92,8 @@ class BundleField {
     void bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
     // Whether elements are so many, and such, that their polynomial is worth more than they are, and wanted.
     [[nodiscard]] bool is_crowded(const Bounded& bounded) const;
-    // That of the window [t0, t1], and by it its f''; `may_part` if the part's rays are divided further.
+    // That of the window [t0, t1], a rough one, and by it its f''; `may_part` if the part's rays are divided
+    // further.
     [[nodiscard]] Condensing condense(const BundlePart& part, double t0, double t1, bool may_part,
                                       Bounded& bounded) const;
     // Whether f < 0 on all of it, by the polynomial.
@@ -115,6 +116,9 @@ class BundleField {
     // One on which nothing is known, and which begins at 0.
     Window& open_unknown();
 
+    // The window that is open with a close polynomial instead of the rough one; it is not usable where there is
+    // none.
+    void condense_closely(Window& window);
     // The coarse entries of the window that is open, which is condensed: to be looked at.
     void enter(Window& window);
 
@@ -182,6 +186,9 @@ class BundleField {
     ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded full_clusters_;
 
+    // The window's bounds of what was condensed.
+    void take_condensed(const Bounded& here, const Condensed& condensed, Window& window) const;
+
     const Bounded* opened_ = nullptr;  // what the window is of
     Stretch opened_on_;
     bool opened_condensed_ = false;
@@ -190,6 +197,7 @@ class BundleField {
     Bounded full_bounded_, about_root_bounded_;
     Window full_, full_mixed_, about_root_;
     Bounded along_bounded_;
+    Condensed close_;
     CondensedRay condensed_ray_;
     bool has_full_ = false, has_full_mixed_ = false, has_along_ = false;  // those are of the window
 

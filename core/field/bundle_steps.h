@@ -112,9 +112,10 @@ struct BundleSteps {
 
     // The elements, all points with Blinn's kernel, as one polynomial about the place at `middle`, that of the
     // window `stretch`, relative to the same place as they are. `may_part`: the window has parts that are
-    // narrower.
+    // narrower. One that is too large for a close polynomial is so for a rough one.
     Condensing (*condense)(const LocalElements& near, const LocalStretch& stretch, double middle,
-                           double threshold, bool may_part, Condensed& condensed);
+                           double threshold, bool may_part, Closeness closeness,
+                           Condensed& condensed);
 
     // And along the ray from `origin` on, |direction| = 1 within 2^-50, between `begin` and `end`; `near` are
     // bounded there. False: they are too narrow, or the window too long.

@@ -268,10 +268,10 @@ HWY_INLINE void frame_about(const Vec3d& axis, std::array<Vec3<float>, 3>& frame
 
 // `middle` is the window's, relative to the elements' place, as in enter_from_local.
 Condensing condense(const LocalElements& near, const LocalStretch& stretch, double middle,
-                    double threshold, bool may_part, Condensed& condensed) {
+                    double threshold, bool may_part, Closeness closeness, Condensed& condensed) {
     static constexpr double cramer = 1.0865 * 1.02, u = 0x1p-24;
     // What the remainder may be, of T: little beside what far elements are left out for in a walk.
-    static constexpr double remainder_share = 0x1p-17;
+    static constexpr double remainder_share = 0x1p-17, rough_share = 0x1p-6;
     constexpr std::size_t least_degree = 3;
     const auto [first, end] = near.first.of(group_of(Shape::point, KernelKind::blinn));
 
@@ -322,7 +322,8 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
                    : Condensing::unfit;
     }
     std::size_t degree = least_degree;
-    while (degree < Condensed::greatest_degree && remainder(r, degree) > limit) ++degree;
+    const double wanted = closeness == Closeness::close ? limit : rough_share * threshold;
+    while (degree < Condensed::greatest_degree && remainder(r, degree) > wanted) ++degree;
     condensed.degree = degree;
     condensed.elements = end - first;
     frame_about(box.axis, condensed.frame);

@@ -67,6 +67,9 @@ struct CondensedRay {
     double rise = 0, fall = 0;
 };
 
+// How close a polynomial has to be: most windows hold no root, for which little will do.
+enum class Closeness { rough, close };
+
 enum class Condensing {
     condensed,
     too_large,  // the window, for its elements; smaller ones may do

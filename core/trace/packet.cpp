@@ -48,6 +48,7 @@ std::size_t PacketTracer::surface_in(Window& window, const BundlePart& part, con
         std::size_t k = part.first;
         while (k < part.end && !hit_here(k)) ++k;
         if (k == part.end) return 0;
+        if (window.is_rough) descent_.field().condense_closely(window);
         descent_.field().enter(window);
     }
     if (window.coarse_usable) {
@@ -209,6 +210,20 @@ bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
     if (!job.settings.skipping.coarse) replace(part, Lanes::walking, Lanes::doubtful);
     walk(window, part, job);
     if (stop.requested()) return false;
+    if (window.condensed != nullptr && window.is_rough &&
+        (any(part, Lanes::candidate) || any(part, Lanes::doubtful))) {
+        // From its begin, now that there may be a root.
+        replace(part, Lanes::candidate, Lanes::walking);
+        replace(part, Lanes::doubtful, Lanes::walking);
+        descent_.field().condense_closely(window);
+        if (!window.coarse_usable) {
+            leave(window, part);
+            return false;
+        }
+        if (!job.settings.skipping.coarse) replace(part, Lanes::walking, Lanes::doubtful);
+        walk(window, part, job);
+        if (stop.requested()) return false;
+    }
     if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) return false;
 
     if (window.condensed == nullptr) {
