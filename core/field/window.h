@@ -71,7 +71,7 @@ struct Window {
     bool coarse_usable = false;
     // If not null, both are empty, or there to be looked at only, and this is f + T: it stays where it is.
     const Condensed* condensed = nullptr;
-    bool is_rough = false;  // a rough one
+    bool is_rough = false;                // a rough one
     const CondensedRay* along = nullptr;  // likewise of the fine entries, in a window for one ray
     // Of a condensed one: what its elements leave out, at most, and what the gradient is off by, per unit.
     double walk_left_out = 0, gradient_error = 0;
