@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the scenes of the benchmarks: scenes.py FOLDER [NAME ...]
 
-NAME is one of figure-1-17, figure-2-23, mixed-N, points-N, mixed-all-N, curves-N, tapers-N, with any N;
+NAME is one of figure-1-17, figure-2-23, mixed-N, points-N, mixed-all-N, curves-N, tapers-N, cloud-N, with any N;
 without names those of the README's table. The same names give the same bytes, on every machine: the
 numbers come from a seeded generator and are rounded to six decimals (vertices of polygons to nine).
 
@@ -18,6 +18,8 @@ numbers come from a seeded generator and are rounded to six decimals (vertices o
   curves-N      cubics only, with the rule for mixed-N
   tapers-N      segments whose widths taper: a tree that forks at the end of every segment, see
                 `tapers`; 10,000 of them cover 30 % of a picture of 16:9
+  cloud-N       3,000 points uniform in the unit ball, all of width N / 100, T half of the field at the
+                centre, camera at z = 4
 """
 
 import json
@@ -28,7 +30,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NAMES = ["figure-1-17", "figure-2-23", "mixed-100", "mixed-1000", "points-1000", "points-10000",
-         "points-100000", "mixed-all-100", "mixed-all-1000", "curves-1000", "tapers-10000"]
+         "points-100000", "mixed-all-100", "mixed-all-1000", "curves-1000", "tapers-10000",
+         "cloud-20", "cloud-100"]
 SEED = 2
 WIDE = 0.16  # of tapers-N: the trunk's width, 0.6 being its length
 # How much nearer or farther the camera stands than in the picture of the gallery.
@@ -228,8 +231,19 @@ def tapers(count):
     return {"ivory": 1, "threshold": 0.5, "camera": camera_at(3.25), "elements": elements}
 
 
+def cloud(hundredths):
+    width = hundredths / 100
+    numbers = random.Random(SEED)
+    places = [rounded(in_ball(numbers)) for _ in range(3000)]
+    at_center = total(math.exp(-total(x * x for x in p) / (width * width)) for p in places)
+    elements = [{"shape": "point", "position": p, "width": width, "color": color(numbers)}
+                for p in places]
+    return {"ivory": 1, "threshold": round(at_center / 2, 6), "camera": camera_at(4),
+            "elements": elements}
+
+
 MAKERS = {"mixed": mixed, "points": points, "mixed-all": mixed_all, "curves": curves,
-          "tapers": tapers}
+          "tapers": tapers, "cloud": cloud}
 
 
 def make(name):
