@@ -339,7 +339,12 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
     const double A = r / root2, sharp = sums.per_narrowest;
     const double derived = 2 * (sums.slope + 2 * A * sums.peak),
                  derived_per_width = 2 * (sums.slope_per_width + 2 * A * sums.peak * sharp);
+    // The exponent |X|^2 at the middle is off by 5 u of it, with |X|^2 <= (q + A)^2 <= 2 (q^2 + A^2); times what
+    // derivatives add, (q + A)^2 2 (q + 2 A) exp(-q^2 / 2) < 13 and (q + A)^2 (4 (q + 2 A)^2 + 2) exp(-q^2 / 2) < 90,
+    // A <= 0.89.
+    const double exponent = 5 * u * grown;
     const double off = grown * (common * sums.peak + 6 * u * A * derived) +
+                       exponent * 2 * (0.25 * sums.bend + A * A * sums.peak) +
                        1.02 * (2 * sums.displaced + u * sums.bend) + R + 1e-30;
     // And of m times its derivatives: 2 (q + 2 A) (y + 1) + 2 A, y = 2 A (q + 2 A), times it, and
     // (q + 2 A)^2 <= 2 (q^2 + 4 A^2).
@@ -347,11 +352,12 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
         derived_per_width +
         (8 * A * (0.25 * sums.bend + 4 * A * A * sums.peak) + 2 * A * sums.peak) * sharp;
     const double slope_off = grown * (common * derived_per_width + 6 * u * weighted) +
+                             13 * exponent * sums.root_per_width +
                              1.02 * (sums.displaced_slope + 30 * u * sums.root_per_width) +
                              R * (n + 1) / rho + 1e-30;
     // By Cramer's bound; (2 q + 4 A)^2 exp(-q^2 / 2) + 2 < 24.
     const double bend_off =
-        (24 * grown * (common + 6 * u * n) + 7.6 * sums.most_displaced + 40 * u) *
+        (24 * grown * (common + 6 * u * n) + 90 * exponent + 7.6 * sums.most_displaced + 40 * u) *
             sums.root_per_width * sharp * 1.02 +
         R * (n + 1) * n / (rho * rho) + 1e-30;
     // Evaluated by Horner's scheme, each term is multiplied and added to at most n + 3 times, and of the slope
@@ -378,8 +384,8 @@ Condensing condense(const LocalElements& near, const LocalStretch& stretch, doub
 }
 
 // The sums of (1) and (2) of condensed.h for one variable. What is given as roundings of everything, beside 6 k for
-// the k-th term and one for each summand, is for the exponent, 8 u s, and for the foot, 5 u |c - M|: with
-// s exp(-s / 2) < 0.75 and (q + A) 2 q exp(-q^2 / 2) < 4 they make less than 30 u |b| sqrt k.
+// the k-th term and one for each summand, is for the exponent, 8 u |X|^2, and for the foot, 5 u |c - M|:
+// with A < 1.42, (q + A)^2 exp(-q^2 / 2) < 3.6 and (q + A) 2 q exp(-q^2 / 2) < 4 they make less than 50 u |b| sqrt k.
 bool condense_ray(const Field& field, const LocalElements& near, const Vec3d& origin,
                   const Vec3d& direction, double begin, double end, double scale, double threshold,
                   CondensedRay& condensed) {

@@ -24,9 +24,9 @@
 //         exp(-|X|^2) prod exp(2 |X_j| a_j + a_j^2) = exp(2 |a|^2 - sum (|X_j| - a_j)^2)
 //                                                  <= exp(r^2) exp(-d^2 / w^2),
 //     since |a| = rho / w. The like for derivatives, with q = d / w, |X| <= q + |a|: the sum of |d/dtau| is at most
-//     2 (|X| + |a|) times that, and (2 q + 4 |a|) exp(-q^2 / 2) <= 1.22 + 4 |a|.
+//     2 (|X| + |a|) times that.
 //
-// So all that is asked of an element is its strength, its width, and the square root of its peak on the window.
+// So all that is asked of an element is its strength, its width, and how near it may be (SmoothSums in condense.inl).
 #pragma once
 
 #include <array>

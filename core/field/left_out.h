@@ -7,6 +7,9 @@
 
 namespace ivory {
 
+// The u below of sums in float.
+inline constexpr double u_float = 0x1p-22;
+
 struct LeftOut {
     double above = 0, below = 0;
 
