@@ -152,6 +152,8 @@ struct CurveSkeleton {
 #endif
 
 #ifdef IVORY_LANES  // once for each instruction set: core/shape/shape_lanes.inl
+#include "core/shape/curve_foot.inl"
+
 HWY_BEFORE_NAMESPACE();
 namespace ivory {
 namespace HWY_NAMESPACE {
@@ -161,206 +163,38 @@ template <>
 struct ShapeLanes<CurveSkeleton> {
     static constexpr Shape shape = shape_of<CurveSkeleton>;
 
-    template <class Real>
-    static constexpr int newton_steps = sizeof(Real) == sizeof(float) ? 5 : 8;
-
-    // From the nearest place of an arc to k0 + v, its square, and nothing proved of it: of the two ends,
-    // the middle and where Newton leads from there, the last unless another is clearly nearer.
-    template <class Tag>
-    struct OffArc {
-        Vec3v<Tag> from;
-        V<Tag> square;
-    };
-    template <class Tag, class Number>
-    static HWY_INLINE OffArc<Tag> off_arc(Tag d, const Number& number, const Vec3v<Tag>& v) {
+    // A point's `away` from an entry's middle, and what is asked of the arc there.
+    template <class Tag, class Ask>
+    static HWY_INLINE auto ask_entry(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
+                                     const Vec3v<Tag>& p, const Ask& ask) {
         using namespace curve_arc;
-        using Real = hn::TFromD<Tag>;
-        const auto vector = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-            return Vec3v<Tag>{number(k), number(k + 1), number(k + 2)};
-        };
-        const Vec3v<Tag> k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
-        const V<Tag> one = constant(d, 1), two = constant(d, 2), three = constant(d, 3);
-        const V<Tag> g0 = dot<Tag>(v, k1), g1 = hn::MulSub(two, dot<Tag>(v, k2), number(at_g)),
-                     g2 = hn::MulSub(three, dot<Tag>(v, k3), number(at_g + 1)),
-                     g3 = hn::Neg(number(at_g + 2)), g4 = hn::Neg(number(at_g + 3)),
-                     g5 = hn::Neg(number(at_g + 4));
-        const V<Tag> s1 = hn::Add(g2, g2), s2 = hn::Mul(three, g3),
-                     s3 = hn::Mul(constant(d, 4), g4), s4 = hn::Mul(constant(d, 5), g5);
-        const V<Tag> falls = hn::Set(d, -least_square<Real>);
-        const auto onward = [&](V<Tag> x, V<Tag> g, V<Tag> slope) HWY_ATTR
-            __attribute__((always_inline)) {
-            const V<Tag> next = hn::Sub(x, hn::Div(g, hn::Min(slope, falls)));
-            return hn::Min(hn::Max(next, hn::Neg(one)), one);
-        };
-        V<Tag> x = onward(hn::Zero(d), g0, g1);
-        for (int step = 1; step < newton_steps<Real>; ++step) {
-            const V<Tag> g = hn::MulAdd(
-                x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, g5, g4), g3), g2), g1),
-                g0);
-            const V<Tag> slope =
-                hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, s4, s3), s2), s1), g1);
-            x = onward(x, g, slope);
-        }
-        const auto away = [&](V<Tag> k1i, V<Tag> k2i, V<Tag> k3i, V<Tag> vi) HWY_ATTR
-            __attribute__((always_inline)) {
-            return hn::NegMulAdd(x, hn::MulAdd(x, hn::MulAdd(x, k3i, k2i), k1i), vi);
-        };
-        OffArc<Tag> best{
-            {away(k1.x, k2.x, k3.x, v.x), away(k1.y, k2.y, k3.y, v.y), away(k1.z, k2.z, k3.z, v.z)},
-            hn::Zero(d)};
-        best.square = dot<Tag>(best.from, best.from);
-        const V<Tag> clearly = hn::Set(d, 1 - 16 * Margins<Real>::margin);
-        const auto compare = [&](const Vec3v<Tag>& from) HWY_ATTR __attribute__((always_inline)) {
-            const V<Tag> square = dot<Tag>(from, from);
-            const M<Tag> nearer = hn::Lt(square, hn::Mul(best.square, clearly));
-            best = {{hn::IfThenElse(nearer, from.x, best.from.x),
-                     hn::IfThenElse(nearer, from.y, best.from.y),
-                     hn::IfThenElse(nearer, from.z, best.from.z)},
-                    hn::IfThenElse(nearer, square, best.square)};
-        };
-        const Vec3v<Tag> begin = vector(at_begin), end = vector(at_end);
-        compare({hn::Sub(v.x, begin.x), hn::Sub(v.y, begin.y), hn::Sub(v.z, begin.z)});
-        compare({hn::Sub(v.x, end.x), hn::Sub(v.y, end.y), hn::Sub(v.z, end.z)});
-        compare(v);
-        return best;
-    }
-
-    template <class Tag>
-    static HWY_INLINE Vec3v<Tag> away(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
-                                      const Vec3v<Tag>& p, V<Tag>& square) {
         const hn::TFromD<Tag>* const numbers = e.numbers();
         const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
             return hn::Set(d, numbers[k]);
         };
         const Vec3v<Tag> from = from_first_place(d, e, p);
-        const OffArc<Tag> off = off_arc(d, number,
-                                        Vec3v<Tag>{hn::Sub(from.x, number(curve_arc::at_k0)),
-                                                   hn::Sub(from.y, number(curve_arc::at_k0 + 1)),
-                                                   hn::Sub(from.z, number(curve_arc::at_k0 + 2))});
+        return ask(
+            ArcFoot(d, number,
+                    Vec3v<Tag>{hn::Sub(from.x, number(at_k0)), hn::Sub(from.y, number(at_k0 + 1)),
+                               hn::Sub(from.z, number(at_k0 + 2))}));
+    }
+    template <class Tag>
+    static HWY_INLINE Vec3v<Tag> away(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
+                                      const Vec3v<Tag>& p, V<Tag>& square) {
+        const auto off = ask_entry(
+            d, e, p,
+            [](const auto& arc) HWY_ATTR __attribute__((always_inline)) { return arc.off(); });
         square = off.square;
         return off.from;
     }
-
-    // Of one place c(x), the nearest as far as five of them and Newton's steps tell. With h(y) = (g(y) - g(x)) /
-    // (y - x), a polynomial of the fourth degree,
-    //     |v - c(y)|^2 = |v - c(x)|^2 - 2 g(x) (y - x) - 2 (integral of (s - x) h(s) from x to y)
-    //                 >= square - 2 G |y - x| + q (y - x)^2,
-    // -q the greatest of h's Bernstein coefficients on [-1, 1] and G = |g(x)|; at an end that g leads out of G is
-    // 0 and q larger by |g|, as |y - x| <= 2. After a way t of the ray that is less by no more than 2 |t| F |y - x|
-    // beside what c(x) alone does, F the greatest |c'|: so slack = G^2 / q, and the foot is within |y - x| <= 2 (G
-    // + |t| F) / q. Where D is concave along the arc, which it stays while |g'| changes by less than reach |c''|,
-    // an end is the nearest: that which no other arc has.
-    // What rounding does is as if v and the coefficients of c were others (`errors`), and, with S = (|v| + R) R,
-    // R = |k1| + |k2| + |k3| and the sum of all |g_k| <= 3 S, 64 u S in g, 512 u S in q and 2048 u S in g'.
     template <class Tag>
     static HWY_INLINE ProvedFoot<Tag> proved_foot(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
                                                   const Vec3v<Tag>& p, V<Tag> reach) {
-        using namespace curve_arc;
-        using Real = hn::TFromD<Tag>;
-        using Margin = Margins<Real>;
-        const Real* const numbers = e.numbers();
-        const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-            return hn::Set(d, numbers[k]);
-        };
-        const auto vector = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-            return Vec3v<Tag>{number(k), number(k + 1), number(k + 2)};
-        };
-        const Vec3v<Tag> from = from_first_place(d, e, p);
-        const Vec3v<Tag> v{hn::Sub(from.x, number(at_k0)), hn::Sub(from.y, number(at_k0 + 1)),
-                           hn::Sub(from.z, number(at_k0 + 2))};
-        const Vec3v<Tag> k1 = vector(at_k1), k2 = vector(at_k2), k3 = vector(at_k3);
-        const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
-        const V<Tag> zero = hn::Zero(d), one = c(1), minus_one = c(-1);
-        const auto away_at = [&](V<Tag> x) HWY_ATTR __attribute__((always_inline)) {
-            const auto away = [&](V<Tag> k1i, V<Tag> k2i, V<Tag> k3i, V<Tag> vi) HWY_ATTR
-                __attribute__((always_inline)) {
-                return hn::NegMulAdd(x, hn::MulAdd(x, hn::MulAdd(x, k3i, k2i), k1i), vi);
-            };
-            return Vec3v<Tag>{away(k1.x, k2.x, k3.x, v.x), away(k1.y, k2.y, k3.y, v.y),
-                              away(k1.z, k2.z, k3.z, v.z)};
-        };
-        const auto square_at = [&](V<Tag> x) HWY_ATTR __attribute__((always_inline)) {
-            const Vec3v<Tag> away = away_at(x);
-            return dot<Tag>(away, away);
-        };
-
-        // The nearest of five places, and on from there.
-        const V<Tag> at_first = square_at(minus_one), at_last = square_at(one);
-        V<Tag> x = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
-        V<Tag> least = hn::Min(at_first, at_last);
-        for (const double place : {-0.5, 0.0, 0.5}) {
-            const V<Tag> square = square_at(c(place));
-            x = hn::IfThenElse(hn::Lt(square, least), c(place), x);
-            least = hn::Min(least, square);
-        }
-        const V<Tag> g0 = dot<Tag>(v, k1), g1 = hn::MulSub(c(2), dot<Tag>(v, k2), number(at_g)),
-                     g2 = hn::MulSub(c(3), dot<Tag>(v, k3), number(at_g + 1)),
-                     g3 = hn::Neg(number(at_g + 2)), g4 = hn::Neg(number(at_g + 3)),
-                     g5 = hn::Neg(number(at_g + 4));
-        const V<Tag> s1 = hn::Add(g2, g2), s2 = hn::Mul(c(3), g3), s3 = hn::Mul(c(4), g4),
-                     s4 = hn::Mul(c(5), g5);
-        const V<Tag> falls = hn::Set(d, -least_square<Real>), begun = x;
-        for (int step = 0; step < newton_steps<Real>; ++step) {
-            const V<Tag> g = hn::MulAdd(
-                x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, g5, g4), g3), g2), g1),
-                g0);
-            const V<Tag> slope =
-                hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, hn::MulAdd(x, s4, s3), s2), s1), g1);
-            x = hn::Min(hn::Max(hn::Sub(x, hn::Div(g, hn::Min(slope, falls))), minus_one), one);
-        }
-        x = hn::IfThenElse(hn::Lt(least, square_at(x)), begun, x);
-
-        const V<Tag> R = number(at_radius);
-        const V<Tag> S =
-            hn::Mul(hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Add(hn::Abs(v.z), R)), R);
-        const V<Tag> error =
-            hn::MulAdd(S, c(4 * double{Margin::margin}), hn::Mul(number(at_lost_square), c(64)));
-        // On all of the arc and of the reach: g' as far as it is above that, in Bernstein's form.
-        const V<Tag> even = hn::Add(g1, hn::Add(s2, s4)), odd = hn::Add(s1, s3),
-                     inner = hn::Sub(g1, s4), half_odd = hn::Mul(c(0.5), hn::Sub(s1, s3));
-        const V<Tag> least_rise =
-            hn::Min(hn::Min(hn::Sub(even, hn::Abs(odd)), hn::Sub(inner, hn::Abs(half_odd))),
-                    hn::Add(hn::NegMulAdd(c(1.0 / 3), s2, g1), s4));
-        const V<Tag> own_end = number(at_own_end);
-        const M<Tag> is_end =
-            hn::And(hn::Gt(hn::NegMulAdd(c(4), error, least_rise),
-                           hn::Mul(hn::Mul(reach, number(at_turn)), hn::Set(d, Margin::more))),
-                    hn::Lt(own_end, c(1.5)));
-        const V<Tag> nearer_end = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
-        x = hn::IfThenElse(is_end, hn::IfThenElse(hn::Eq(own_end, zero), nearer_end, own_end), x);
-
-        const V<Tag> h4 = g5, h3 = hn::MulAdd(x, h4, g4), h2 = hn::MulAdd(x, h3, g3),
-                     h1 = hn::MulAdd(x, h2, g2), h0 = hn::MulAdd(x, h1, g1),
-                     g = hn::MulAdd(x, h0, g0);
-        const V<Tag> greatest =
-            hn::Max(hn::Max(hn::Add(hn::Add(h0, hn::Add(h2, h4)), hn::Abs(hn::Add(h1, h3))),
-                            hn::Add(hn::Sub(h0, h4), hn::Abs(hn::Mul(c(0.5), hn::Sub(h1, h3))))),
-                    hn::Add(hn::NegMulAdd(c(1.0 / 3), h2, h0), h4));
-        const V<Tag> outward =
-            at_least_0(hn::Sub(hn::IfThenElseZero(hn::Eq(hn::Abs(x), one), hn::Mul(g, x)), error));
-        const V<Tag> q = hn::Sub(hn::Sub(outward, greatest), error);
-        const V<Tag> G =
-            hn::IfThenElseZero(hn::Eq(outward, zero), hn::MulAdd(error, c(0.125), hn::Abs(g)));
-        const V<Tag> fastest = number(at_fastest), widened = c(1 + 0x1p-10);
-        const M<Tag> known = hn::Gt(q, hn::Mul(error, c(0x1p-3)));
-        const V<Tag> inverse = hn::Div(widened, hn::IfThenElse(known, q, one));
-        const V<Tag> at_most = hn::Mul(hn::Add(G, hn::Abs(hn::Min(q, zero))), c(4 * (1 + 0x1p-10)));
-        ProvedFoot<Tag> foot;
-        foot.away = away_at(x);
-        foot.square = dot<Tag>(foot.away, foot.away);
-        // Of an end nothing else is asked, and where nothing is known there is d' <= 1.
-        const V<Tag> of_known = hn::Min(at_most, hn::Mul(square_of(G), inverse));
-        foot.slack = hn::IfThenZeroElse(is_end, hn::IfThenElse(known, of_known, at_most));
-        const M<Tag> is_bounded = hn::AndNot(is_end, known);
-        foot.bend =
-            hn::IfThenElseZero(is_bounded, hn::Mul(hn::Mul(c(2), square_of(fastest)), inverse));
-        const V<Tag> anything =
-            hn::Mul(hn::Add(hn::Sqrt(foot.square), reach), c(2 * (1 + 0x1p-10)));
-        foot.pull = hn::IfThenZeroElse(
-            is_end,
-            hn::IfThenElse(known, hn::Mul(hn::Mul(c(2), hn::Mul(fastest, G)), inverse), anything));
-        foot.in_reach = hn::Or(is_end, hn::Not(known));
-        return foot;
+        M<Tag> is_end;
+        return ask_entry(
+            d, e, p, [&](const auto& arc) HWY_ATTR __attribute__((always_inline)) {
+                return arc.proved(reach, is_end);
+            });
     }
 
     // Some arcs' middles, from where places are relative to; and the axis' point at t from there.
@@ -408,7 +242,7 @@ struct ShapeLanes<CurveSkeleton> {
             V<Tag> least, here, at_other;
         };
         const auto at_end = [&](Real t, Real other) HWY_ATTR __attribute__((always_inline)) {
-            const OffArc<Tag> off = off_arc(d, number, from_middle(middle, s.axis, t));
+            const auto off = ArcFoot(d, number, from_middle(middle, s.axis, t)).off();
             const Real way = other - t;
             const Vec3v<Tag> there{hn::Add(off.from.x, hn::Set(d, way * s.axis.x)),
                                    hn::Add(off.from.y, hn::Set(d, way * s.axis.y)),
@@ -540,7 +374,9 @@ struct ShapeLanes<CurveSkeleton> {
         const V<Tag> n =
             hn::Mul(hn::Div(speeds, hn::Add(square, square)), hn::Mul(steeper, c(1 + 0x1p-10)));
         V<Tag> steps = one;
-        for (int step = 0; step < (in_float ? newton_steps<float> : newton_steps<double>); ++step) {
+        for (int step = 0;
+             step < (in_float ? newton_steps_of_arcs<float> : newton_steps_of_arcs<double>);
+             ++step) {
             steps = hn::Min(hn::Mul(n, square_of(steps)), one);
         }
         const V<Tag> of_steps = hn::Mul(fastest, hn::IfThenElseZero(is_smooth, steps));
