@@ -186,11 +186,11 @@ bool BundleField::bound(const Bounded& parent, Bounded& here, const BundlePart& 
     return true;
 }
 
-void BundleField::bound_curvature(const BundlePart& part, double t0, double t1,
-                                  Bounded& bounded) const {
+void BundleField::bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded) {
     if (!bounded.is_local) return bound_curvature(stretch(part, t0, t1), bounded);
-    const CurvatureSums bends = bundle_steps().bound_curvature_local(
-        bounded.local, local_stretch(part, bounded.local_middle, t0, t1));
+    const LocalStretch on = local_stretch(part, bounded.local_middle, t0, t1);
+    bundle_steps().keep_nearest_parts_local(bounded.local, on, feet_in_float_);
+    const CurvatureSums bends = bundle_steps().bound_curvature_local(bounded.local, on);
     const double sums = 1 + static_cast<double>(bounded.local.size() + 64) * 0x1p-22;
     const double per_unit = 1 / unit_;
     bounded.rise = bends.rise * sums * (per_unit * per_unit);
@@ -198,7 +198,8 @@ void BundleField::bound_curvature(const BundlePart& part, double t0, double t1,
     bounded.kinked_slope = bends.kinked_slope * sums * per_unit;
 }
 
-void BundleField::bound_curvature(const Stretch& on, Bounded& bounded) const {
+void BundleField::bound_curvature(const Stretch& on, Bounded& bounded) {
+    bundle_steps().keep_nearest_parts(*field_, on, scale_, bounded.active, feet_);
     const CurvatureSums bends = bundle_steps().bound_curvature(*field_, on, scale_, bounded.active);
     bounded.rise = bends.rise * (1 + 0x1p-30);
     bounded.fall = bends.fall * (1 + 0x1p-30);

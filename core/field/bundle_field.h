@@ -89,7 +89,7 @@ class BundleField {
     bool bound(const Bounded& parent, Bounded& here, const BundlePart& part, double t0, double t1,
                bool in_clusters);
     // And its f''.
-    void bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded) const;
+    void bound_curvature(const BundlePart& part, double t0, double t1, Bounded& bounded);
     // Whether elements are so many, and such, that their polynomial is worth more than they are, and wanted.
     [[nodiscard]] bool is_crowded(const Bounded& bounded) const;
     // That of the window [t0, t1], a rough one, and by it its f''; `may_part` if the part's rays are divided
@@ -173,7 +173,7 @@ class BundleField {
                    Bounded& result);
     PeakSums bound_members(const BundlePart& part, double t0, double t1, double cut,
                            const Bounded& parent, Bounded& result);
-    void bound_curvature(const Stretch& on, Bounded& bounded) const;
+    void bound_curvature(const Stretch& on, Bounded& bounded);
     void enter(const Bounded& bounded, const BundlePart& part, Window& window);
     void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
                   const FloatCuts& float_cuts, Window& window);
@@ -183,6 +183,8 @@ class BundleField {
     const Field* field_ = nullptr;
     BundlePart home_;
     Bounded list_;
+    PartFeet<double> feet_;
+    PartFeet<float> feet_in_float_;
     ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded full_clusters_;
 

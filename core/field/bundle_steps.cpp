@@ -9,6 +9,7 @@
 #include "core/field/condense.inl"
 #include "core/field/curvature.inl"
 #include "core/field/entries.inl"
+#include "core/field/nearest_parts.inl"
 #include "core/field/peaks.inl"
 #include "core/field/places.inl"
 
@@ -17,11 +18,24 @@ namespace ivory {
 namespace HWY_NAMESPACE {
 
 const BundleSteps& bundle_steps_of_target() {
-    static const BundleSteps steps{
-        bound,        bound_clusters, bound_curvature, bound_across,          enter_local,
-        place_local,  bound_members,  bound_local,     bound_curvature_local, bound_across_local,
-        condense,     condense_ray,   coarse,          coarse_local,          fine,
-        fine_in_float};
+    static const BundleSteps steps{bound,
+                                   bound_clusters,
+                                   keep_nearest_parts,
+                                   keep_nearest_parts_local,
+                                   bound_curvature,
+                                   bound_across,
+                                   enter_local,
+                                   place_local,
+                                   bound_members,
+                                   bound_local,
+                                   bound_curvature_local,
+                                   bound_across_local,
+                                   condense,
+                                   condense_ray,
+                                   coarse,
+                                   coarse_local,
+                                   fine,
+                                   fine_in_float};
     return steps;
 }
 

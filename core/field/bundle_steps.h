@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "core/field/active_elements.h"
 #include "core/field/condensed.h"
@@ -71,6 +72,18 @@ struct StageSums {
     bool usable = true;
 };
 
+// Where parts of elements are nearest, side by side (core/field/nearest_parts.inl); memory that is kept.
+template <class Real>
+struct PartFeet {
+    std::vector<Real> x, y, z, least, most;
+    void make_room(std::size_t count) {
+        if (x.size() >= count + LocalElements::room) return;
+        for (auto* column : {&x, &y, &z, &least, &most}) {
+            column->resize(count + count / 2 + LocalElements::room);
+        }
+    }
+};
+
 struct BundleSteps {
     // Of the `candidates` those with |F| possibly above `cut` (of strengths times `scale`).
     PeakSums (*bound)(const Field& field, const Stretch& stretch, double scale, double cut,
@@ -79,6 +92,12 @@ struct BundleSteps {
     // The same of clusters: indices into Field::clusters, of which nothing but `element` is set.
     PeakSums (*bound_clusters)(const Field& field, const Stretch& stretch, double scale, double cut,
                                const ActiveElements& candidates, ActiveElements& kept);
+
+    // Of joined elements, bounded on the stretch, the parts that may be the nearest there stay.
+    void (*keep_nearest_parts)(const Field& field, const Stretch& stretch, double scale,
+                               ActiveElements& active, PartFeet<double>& feet);
+    void (*keep_nearest_parts_local)(LocalElements& near, const LocalStretch& stretch,
+                                     PartFeet<float>& feet);
 
     // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
     CurvatureSums (*bound_curvature)(const Field& field, const Stretch& stretch, double scale,

@@ -57,6 +57,17 @@ std::size_t join_parts(List& list, std::size_t first, std::size_t end, double cu
     return to;
 }
 
+// With all that is known of it before `bend`, but `inverse`.
+HWY_INLINE void move_local(LocalElements& list, std::size_t from, std::size_t to) {
+    list.element[to] = list.element[from];
+    list.source[to] = list.source[from];
+    for (auto* column : {&list.x, &list.y, &list.z, &list.strength, &list.inverse_square, &list.mx,
+                         &list.my, &list.mz, &list.parameter, &list.length, &list.taper_rate,
+                         &list.least, &list.most, &list.peak, &list.whole}) {
+        (*column)[to] = (*column)[from];
+    }
+}
+
 // One bit for each of so many lanes from i on: the next one, before `end`, is another part of the same.
 template <class SourceOf>
 HWY_INLINE std::uint32_t joins_of(std::size_t i, std::size_t end, std::size_t lanes,

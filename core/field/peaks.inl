@@ -318,16 +318,7 @@ void join_parts(LocalElements& kept, std::size_t first, double cut, std::size_t&
         kept, first, count, cut, double{Margins<float>::more},
         [&](std::size_t i) { return double{kept.strength[i]}; },
         [&](std::size_t i) { return kept.source[i]; },
-        [&](std::size_t from, std::size_t to) {
-            kept.element[to] = kept.element[from];
-            kept.source[to] = kept.source[from];
-            for (auto* column : {&kept.x, &kept.y, &kept.z, &kept.strength, &kept.inverse_square,
-                                 &kept.mx, &kept.my, &kept.mz, &kept.parameter, &kept.length,
-                                 &kept.taper_rate, &kept.least, &kept.most, &kept.peak}) {
-                (*column)[to] = (*column)[from];
-            }
-        },
-        sums);
+        [&](std::size_t from, std::size_t to) { move_local(kept, from, to); }, sums);
 }
 
 template <Shape shape, KernelKind kind>

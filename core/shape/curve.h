@@ -163,7 +163,7 @@ template <>
 struct ShapeLanes<CurveSkeleton> {
     static constexpr Shape shape = shape_of<CurveSkeleton>;
 
-    // A point's `away` from an entry's middle, and what is asked of the arc there.
+    // Asks an entry's arc for the foot of p.
     template <class Tag, class Ask>
     static HWY_INLINE auto ask_entry(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
                                      const Vec3v<Tag>& p, const Ask& ask) {
@@ -213,6 +213,36 @@ struct ShapeLanes<CurveSkeleton> {
                 hn::Sub(hn::Set(d, t * axis.z), middle.z)};
     }
 
+    template <class Tag>
+    static HWY_INLINE PartFoot<Tag> part_foot(const Seen<Tag, shape>& e,
+                                              const Reach<hn::TFromD<Tag>>& s, hn::TFromD<Tag> t,
+                                              V<Tag> reach, V<Tag> error) {
+        const Tag d;
+        const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
+            return e.number(k);
+        };
+        PartFoot<Tag> part;
+        M<Tag> is_end;
+        part.error = of_curve(e, s, error);
+        part.foot = ArcFoot(d, number, from_middle(middle_of(e), s.axis, t))
+                        .proved(hn::Add(reach, part.error), is_end);
+        part.length = hn::Mul(number(curve_arc::at_radius), constant(d, 2));
+        // An end of D that is concave along an arc and its neighbour is not the nearest of both: of these arcs
+        // only the curve's own ends may be.
+        part.never = hn::And(is_end, hn::Eq(number(curve_arc::at_own_end), hn::Zero(d)));
+        return part;
+    }
+    // What places are off by, with c and the choice of the nearest.
+    template <class Tag>
+    static HWY_INLINE V<Tag> of_curve(const Seen<Tag, shape>& e, const Reach<hn::TFromD<Tag>>& s,
+                                      V<Tag> error) {
+        using Real = hn::TFromD<Tag>;
+        const Tag d;
+        return hn::MulAdd(
+            hn::Add(hn::Add(e.magnitude, hn::Set(d, s.magnitude)), e.number(curve_arc::at_fastest)),
+            hn::Set(d, 16 * Margins<Real>::margin), error);
+    }
+
     // At most so much is (best^2 - d^2), best from one of x = -1, 0, 1 or nearer: where D' = 0 the next of
     // these is half as far away as they are apart, and on the way there |D''| / 2 <= |c'|^2 + (d + |c'| / 2)
     // |c''|; else an end is the nearest.
@@ -229,10 +259,7 @@ struct ShapeLanes<CurveSkeleton> {
         using namespace curve_arc;
         using Real = hn::TFromD<Tag>;
         const Tag d;
-        // of c, and of the choice
-        error =
-            hn::MulAdd(hn::Add(hn::Add(e.magnitude, hn::Set(d, s.magnitude)), e.number(at_fastest)),
-                       hn::Set(d, 16 * Margins<Real>::margin), error);
+        error = of_curve(e, s, error);
         const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
             return e.number(k);
         };

@@ -205,6 +205,25 @@ struct SegmentLanes {
         return away;
     }
 
+    // Of a convex set's other places y |p - y|^2 >= |p - foot|^2 + |foot - y|^2. One whose 1 / |m|^2 counts as 0
+    // stands for its end a.
+    template <class Tag>
+    static HWY_INLINE PartFoot<Tag> part_foot(const Seen<Tag, shape>& e,
+                                              const Reach<hn::TFromD<Tag>>& s, hn::TFromD<Tag> t,
+                                              V<Tag>, V<Tag> error) {
+        const Tag d;
+        const Vec3v<Tag> from = e.from_axis(s.axis, t);
+        PartFoot<Tag> part;
+        part.foot.away = less_share(from, e.m, clamped<Tag>(dot<Tag>(from, e.m), e.parameter));
+        part.foot.square = dot<Tag>(part.foot.away, part.foot.away);
+        part.foot.slack = part.foot.pull = hn::Zero(d);
+        part.foot.bend = constant(d, 2);
+        part.error = hn::Add(error, hn::IfThenElseZero(hn::Eq(e.parameter, hn::Zero(d)), e.size));
+        part.length = e.size;
+        part.never = hn::FirstN(d, 0);
+        return part;
+    }
+
     // The distance of the axis' point at t.
     template <class Tag>
     static HWY_INLINE V<Tag> distance_at(const Seen<Tag, shape>& e,

@@ -252,8 +252,10 @@ struct Entering {
 // and, where it has kinks,
 //     turning(seen, reach, error, most)
 //     is_defined(d, entry, inverse_square, p)     the direction of `away`
-// and, where it proves feet,
+// where it proves feet,
 //     proved_foot(d, entry, p, reach)
+// and, where parts of an element may be told apart by it,
+//     part_foot(seen, reach, t, reach, error)
 template <class S>
 struct ShapeLanes;
 
@@ -267,6 +269,14 @@ struct ProvedFoot {
     Vec3v<Tag> away;  // p - c
     V<Tag> square, slack, bend, pull;
     M<Tag> in_reach;
+};
+// Of the axis' point at t, on one part of an element.
+template <class Tag>
+struct PartFoot {
+    ProvedFoot<Tag> foot;
+    V<Tag> error;   // of any place of the part, from there
+    V<Tag> length;  // no place of the part is farther from the foot
+    M<Tag> never;   // within reach no place of this part alone is the element's nearest
 };
 // Stands for what there is no bound of.
 template <class Real>
@@ -299,6 +309,13 @@ using LanesOfShape = ShapeLanes<SkeletonOf<shape>>;
 // Whether it has kinks of which each ray may prove that they are none of its own.
 template <Shape shape>
 inline constexpr bool proves_feet = SkeletonOf<shape>::has_numbers&& SkeletonOf<shape>::has_kinks;
+
+// Whether parts can be told apart by their feet.
+template <Shape shape>
+inline constexpr bool compares_feet = SkeletonOf<shape>::is_joined&& requires(
+    const Seen<F, shape>& e, const Reach<float>& s, V<F> x) {
+    LanesOfShape<shape>::part_foot(e, s, 0.0F, x, x);
+};
 
 template <class Visit, std::size_t... shape>
 HWY_INLINE void for_shapes(const Visit& visit, std::index_sequence<shape...>) {
