@@ -61,6 +61,11 @@ HWY_INLINE V<Tag> greatest_root(Tag d, const Entering& on, const Arrivals<Tag, s
 template <Shape shape>
 inline constexpr double greatest_turn = numbered<shape> ? 0.25 : 1e-2;
 
+// In widths, what Newton's steps may leave of a foot without each ray's own proof of it: little beside what a
+// stage is there to tell.
+template <class Real>
+inline constexpr double loose_foot = sizeof(Real) == sizeof(float) ? 0x1p-12 : 0x1p-36;
+
 // From the field, in double.
 template <Shape shape>
 struct FieldArrivals {
@@ -190,7 +195,7 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
             const EntryErrors<Tag> of_proved =
                 etas<shape>(d, on, e, c_length, constant(d, -1), arrivals.inverse_width);
             is_proved = hn::Or(kinked, hn::And(hn::Gt(arrivals.inverse, zero),
-                                               hn::Not(hn::Lt(eta.value, c(5e-4)))));
+                                               hn::Not(hn::Lt(eta.value, c(loose_foot<Real>)))));
             eta = {hn::IfThenElse(is_proved, of_proved.value, eta.value),
                    hn::IfThenElse(is_proved, of_proved.slope, eta.slope)};
         }

@@ -224,10 +224,10 @@ struct Enclosing {
     bool has_joined;
     double error;  // of the difference of two values, at most
 
-    // What the lines of a step are asked for: the first guess is that near, others nearer by far.
-    [[nodiscard]] double reach_of_step(int step) const {
-        return (window.end - window.begin) * (step == 0 ? 0x1p-6 : 0x1p-14);
-    }
+    // What the lines of a step are asked for: the first guess is that near, others nearer by far, but for what
+    // is open there.
+    [[nodiscard]] double first_reach() const { return (window.end - window.begin) * 0x1p-6; }
+    [[nodiscard]] double least_reach() const { return (window.end - window.begin) * 0x1p-14; }
 };
 
 // With g(t) = f without what was left out, and `above`, `below` bounds of that and of rounding:
@@ -244,11 +244,12 @@ struct Enclosed {
     M<D> done;    // lo .. hi are the grid lines about the root
     V<D> lo, hi;  // otherwise f < 0 up to lo, and, unless it is infinite, the root before hi
     V<D> m;       // where to look next
+    V<D> reach;   // and as far as which other branches are asked for
     V<D> cell, inverse_cell;
 
     // With f and its slope at m, and its branches as far as `reach`.
     HWY_INLINE void take(const Enclosing& task, const FieldValue<D>& value,
-                         const Branches<D>& branches, double reach) {
+                         const Branches<D>& branches) {
         const D d;
         const Window& window = task.window;
         const auto c = [&](double x) HWY_ATTR { return hn::Set(d, x); };
@@ -268,7 +269,7 @@ struct Enclosed {
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
         V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
         if (task.has_joined) {
-            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, c(reach)),
+            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, reach),
                                                 hn::Max(branches.above, branches.below),
                                                 hn::Add(branches.anywhere, branches.beyond)));
         }
@@ -303,6 +304,10 @@ struct Enclosed {
         // The next m lies within delta of this one, so that g still rises up to there.
         open = hn::AndNot(decided, known);
         m = hn::IfThenElse(open, hn::NegMulAdd(value.f, inverse, m), m);
+        if (task.has_joined) {  // delta there, if f is nearly 0
+            const V<D> off = hn::Sub(size, hn::Abs(value.f));
+            reach = hn::Max(c(task.least_reach()), hn::Mul(hn::Mul(c(2.25), off), inverse));
+        }
     }
 };
 
@@ -316,6 +321,7 @@ HWY_INLINE Enclosed not_enclosed(const Enclosing& task, const Vec3v<D>& directio
             hn::Set(d, task.window.begin),
             hn::Set(d, infinity<double>),
             m,
+            hn::Set(d, task.first_reach()),
             cell,
             hn::Div(hn::Set(d, 1), cell)};
 }
@@ -336,10 +342,10 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
         Vec3v<D> p[n];
         FieldValue<D> value[n];
         Branches<D> branches[n];
-        const double reach = task.reach_of_step(step);
         if (task.has_joined) {
             for_each_of<n>([&](auto half) HWY_ATTR {
-                branches[half].begin(hn::Set(d, reach), hn::Set(d, (1 - 0x1p-40) / reach),
+                const V<D> reach = enclosed[half].reach;
+                branches[half].begin(reach, hn::Div(hn::Set(d, 1 - 0x1p-40), reach),
                                      hn::Set(d, task.error));
             });
         }
@@ -354,7 +360,7 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
             });
         }
         for_each_of<n>([&](auto half) HWY_ATTR {
-            enclosed[half].take(task, value[half], branches[half], reach);
+            enclosed[half].take(task, value[half], branches[half]);
         });
     }
     return steps;
