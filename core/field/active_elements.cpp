@@ -7,6 +7,7 @@ namespace ivory {
 
 void ActiveElements::take(const GroupStarts& groups, std::span<const std::uint32_t> elements) {
     make_room(elements.size());
+    is_whole = true;
     std::copy(elements.begin(), elements.end(), element.begin());
     first.clear();
     auto from = elements.begin();
@@ -20,6 +21,7 @@ void ActiveElements::take(const GroupStarts& groups, std::span<const std::uint32
 
 void ActiveElements::take_members(const Clusters& clusters, const ActiveElements& of) {
     make_room(of.size() * cluster_size);
+    is_whole = true;
     std::size_t count = 0;
     first.clear();
     for (std::uint64_t left = of.first.present(); left != 0; left &= left - 1) {
@@ -40,7 +42,9 @@ void ActiveElements::make_room(std::size_t count) {
     if (element.size() >= count + room) return;
     const std::size_t size = count + count / 2 + room;
     element.assign(size, 0);
-    for (auto* values : {&least, &most, &peak, &whole, &inverse}) values->assign(size, 0.0);
+    for (auto* values : {&least, &most, &peak, &whole, &piece_middle, &piece_half, &inverse}) {
+        values->assign(size, 0.0);
+    }
 }
 
 void ActiveElements::take(const LocalElements& near, std::size_t i, double unit) {
@@ -50,6 +54,9 @@ void ActiveElements::take(const LocalElements& near, std::size_t i, double unit)
     most[count] = double{near.most[i]};
     peak[count] = double{near.peak[i]};
     whole[count] = double{near.whole[i]};
+    piece_middle[count] = double{near.mx[i]};
+    piece_half[count] = double{near.my[i]};
+    is_whole = false;
     inverse[count] = double{near.inverse[i]} / unit;
     first.end(count + 1);
 }

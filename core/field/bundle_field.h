@@ -164,6 +164,7 @@ class BundleField {
         double greatest, least, worst;
     };
     [[nodiscard]] static FloatCuts float_cuts(double cut);
+    static constexpr FloatCuts all_in_double{-1, -1, 0};
 
     [[nodiscard]] Stretch stretch(const BundlePart& part, double t0, double t1) const;
     [[nodiscard]] LocalStretch local_stretch(const BundlePart& part, double middle, double t0,
@@ -178,13 +179,14 @@ class BundleField {
     void complete(const Bounded& bounded, const BundlePart& part, const Stretch& on,
                   const FloatCuts& float_cuts, Window& window);
     void bound_opened(double cut, Bounded& finer);
+    void bound_opened_curvature(Bounded& finer);
     void take_opened(const Bounded& bounded, const FloatCuts& float_cuts, Window& window);
 
     const Field* field_ = nullptr;
     BundlePart home_;
     Bounded list_;
-    PartFeet<double> feet_;
-    PartFeet<float> feet_in_float_;
+    BothFeet<double> feet_;
+    BothFeet<float> feet_in_float_;
     ActiveElements members_;  // of clusters, or of a window with a fine stage
     Bounded full_clusters_;
 

@@ -136,9 +136,9 @@ void BundleField::enter(const Bounded& here, const BundlePart& part, Window& w) 
     StageSums sums;
     double slope_unit = unit_, u_sums = 0x1p-53;
     if (here.is_local) {
-        sums =
-            bundle_steps().coarse_local(here.local, local_stretch(part, here.local_middle, t0, t1),
-                                        (w.middle - here.local_middle) / unit_, cuts, w);
+        sums = bundle_steps().coarse_local(*field_, here.local,
+                                           local_stretch(part, here.local_middle, t0, t1),
+                                           (w.middle - here.local_middle) / unit_, cuts, w);
         slope_unit = 1;
         u_sums = 0x1p-24;
     } else {
@@ -174,8 +174,8 @@ void BundleField::complete(const Bounded& bounded, const BundlePart& part, const
         const LocalStretch near_on = local_stretch(part, bounded.local_middle, on.begin, on.end);
         const double middle = (w.middle - bounded.local_middle) / unit_;
         const auto part_at = [&](double cut) {
-            const StageSums sums = bundle_steps().fine_in_float(bounded.local, near_on, middle,
-                                                                unit_, cut, w, members_);
+            const StageSums sums = bundle_steps().fine_in_float(*field_, bounded.local, near_on,
+                                                                middle, unit_, cut, w, members_);
             if (w.fine_in_float.size > 0) {
                 in_float = stage_bounds(sums, 0x1p-24, 0x1p-24, roundings_in_float(w.fine_in_float),
                                         bounded.local.size(), 0, {}, 1, 1e-30);
@@ -221,19 +221,32 @@ void BundleField::take_opened(const Bounded& bounded, const FloatCuts& float_cut
     complete(bounded, opened_part_, opened_on_, float_cuts, w);
 }
 
+// Where elements suit float they are bounded in it, all the same.
 const Window& BundleField::full() {
     if (has_full_) return full_;
     has_full_ = true;
-    const Bounded* from = &list_;
-    if (list_.in_clusters) {
-        bound(opened_on_, full_cut_, list_, true, full_clusters_);
-        from = &full_clusters_;
+    if (opened_->is_local) {
+        if (!has_full_mixed_ || opened_condensed_) {
+            bound_opened(full_cut_, full_bounded_);
+            bound_opened_curvature(full_bounded_);
+        }
+    } else {
+        const Bounded* from = &list_;
+        if (list_.in_clusters) {
+            bound(opened_on_, full_cut_, list_, true, full_clusters_);
+            from = &full_clusters_;
+        }
+        bound(opened_on_, full_cut_, *from, false, full_bounded_);
+        full_bounded_.is_local = false;
+        bound_curvature(opened_on_, full_bounded_);
     }
-    bound(opened_on_, full_cut_, *from, false, full_bounded_);
-    full_bounded_.is_local = false;
-    bound_curvature(opened_on_, full_bounded_);
-    take_opened(full_bounded_, float_cuts(0), full_);
+    take_opened(full_bounded_, all_in_double, full_);
     return full_;
+}
+
+void BundleField::bound_opened_curvature(Bounded& finer) {
+    const double pad = pad_of(opened_on_.begin, opened_on_.end);
+    bound_curvature(opened_part_, opened_on_.begin - pad, opened_on_.end + pad, finer);
 }
 
 // The list's elements on the window that is open, those above the cut, in float.
@@ -263,8 +276,7 @@ const Window& BundleField::full_mixed() {
     has_full_mixed_ = true;
     Bounded& finer = full_bounded_;
     bound_opened(opened_condensed_ ? fine_cut_ * crowd_fine_cut_multiple : full_cut_, finer);
-    const double pad = pad_of(opened_on_.begin, opened_on_.end);
-    bound_curvature(opened_part_, opened_on_.begin - pad, opened_on_.end + pad, finer);
+    bound_opened_curvature(finer);
     take_opened(finer,
                 opened_condensed_ ? FloatCuts{fine_cut_ * float_cut_multiple, fine_cut_,
                                               fine_cut_ * worst_in_crowd}

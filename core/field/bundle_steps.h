@@ -76,12 +76,18 @@ struct StageSums {
 template <class Real>
 struct PartFeet {
     std::vector<Real> x, y, z, least, most;
+    std::vector<Real> at, q, pull, lower, halved;  // of what is narrowed down
     void make_room(std::size_t count) {
         if (x.size() >= count + LocalElements::room) return;
-        for (auto* column : {&x, &y, &z, &least, &most}) {
+        for (auto* column : {&x, &y, &z, &least, &most, &at, &q, &pull, &lower, &halved}) {
             column->resize(count + count / 2 + LocalElements::room);
         }
     }
+};
+
+template <class Real>
+struct BothFeet {
+    PartFeet<Real> feet, second;
 };
 
 struct BundleSteps {
@@ -95,9 +101,9 @@ struct BundleSteps {
 
     // Of joined elements, bounded on the stretch, the parts that may be the nearest there stay.
     void (*keep_nearest_parts)(const Field& field, const Stretch& stretch, double scale,
-                               ActiveElements& active, PartFeet<double>& feet);
+                               ActiveElements& active, BothFeet<double>& feet);
     void (*keep_nearest_parts_local)(LocalElements& near, const LocalStretch& stretch,
-                                     PartFeet<float>& feet);
+                                     BothFeet<float>& feet);
 
     // Bounds of the elements' f'' on the stretch that they were bounded on; sets `inverse`.
     CurvatureSums (*bound_curvature)(const Field& field, const Stretch& stretch, double scale,
@@ -147,17 +153,18 @@ struct BundleSteps {
                         const CoarseCuts& cuts, const ActiveElements& active, Window& window);
     // The same, in float, and so are the sums. `stretch` is that of the window, relative to the
     // same place as the elements.
-    StageSums (*coarse_local)(const LocalElements& near, const LocalStretch& stretch, double middle,
-                              const CoarseCuts& cuts, Window& window);
+    StageSums (*coarse_local)(const Field& field, const LocalElements& near,
+                              const LocalStretch& stretch, double middle, const CoarseCuts& cuts,
+                              Window& window);
 
     // The window's fine entries: all.
     StageSums (*fine)(const Field& field, const Stretch& stretch, double scale,
                       const ActiveElements& active, Window& window);
     // Parts elements in float: those with |F| certainly at most `cut` become the window's
     // entries, in units, the others join `others`.
-    StageSums (*fine_in_float)(const LocalElements& near, const LocalStretch& stretch,
-                               double middle, double unit, double cut, Window& window,
-                               ActiveElements& others);
+    StageSums (*fine_in_float)(const Field& field, const LocalElements& near,
+                               const LocalStretch& stretch, double middle, double unit, double cut,
+                               Window& window, ActiveElements& others);
 };
 
 // For this machine.

@@ -29,7 +29,7 @@ HWY_INLINE V<Tag> steepest(Tag d, const Seen<Tag, shape>& e, V<Tag> least, V<Tag
 
 // Kinks that each ray may prove to be none of its own count so much beside others, where stretches are to be
 // halved: less leaves more to single rays, more makes more windows (curves-1000).
-constexpr double proved_kinks_count = 0x1p-4;
+constexpr double proved_kinks_count = 0x1p-6;
 
 // Adds the bends of some elements; returns the circles' bound of 1 / rho.
 template <KernelKind kind, class Tag, Shape shape>
@@ -139,10 +139,8 @@ AcrossSums bound_across(const Field& field, const Stretch& stretch, double scale
                                                                   std::size_t end) HWY_ATTR {
         add_across<shape, kind>(
             d, reach, first, end,
-            [&](std::size_t i) HWY_ATTR {
-                return seen_in_field<shape>(field, stretch, scale,
-                                            hn::LoadU(I(), &active.element[i]));
-            },
+            [&](std::size_t i)
+                HWY_ATTR { return seen_active<shape>(field, stretch, scale, active, i); },
             [&](std::size_t i) HWY_ATTR {
                 return BoundsOfLanes<V<D>>{hn::LoadU(d, &active.least[i]),
                                            hn::LoadU(d, &active.most[i]),
@@ -217,13 +215,11 @@ template <Shape shape, KernelKind kind>
 void bend_group(const Field& field, const Stretch& stretch, double scale, ActiveElements& active,
                 std::size_t first, std::size_t end, CurvatureSums& sums) {
     const D d;
-    const I di;
     const Reach<double> reach = reach_of(stretch);
     BendLanes<D> lanes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     JoinedBends<D> bends;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-        const auto e =
-            seen_in_field<shape>(field, stretch, scale, hn::LoadU(di, &active.element[i]));
+        const auto e = seen_active<shape>(field, stretch, scale, active, i);
         const V<D> inverse =
             add_bends<kind>(e, reach, hn::FirstN(d, end - i), hn::LoadU(d, &active.least[i]),
                             hn::LoadU(d, &active.most[i]), hn::LoadU(d, &active.peak[i]), lanes);

@@ -64,7 +64,25 @@ inline constexpr double greatest_turn = numbered<shape> ? 0.25 : 1e-2;
 // In widths, what Newton's steps may leave of a foot without each ray's own proof of it: little beside what a
 // stage is there to tell.
 template <class Real>
-inline constexpr double loose_foot = sizeof(Real) == sizeof(float) ? 0x1p-12 : 0x1p-36;
+inline constexpr double loose_foot = sizeof(Real) == sizeof(float) ? 0x1p-18 : 0x1p-36;
+
+// The numbers of a piece of a part, which the stage keeps.
+template <Shape shape, class Real>
+const Real* keep_piece(const double* whole, double middle, double half, double unit,
+                       StageEntries<Real>& stage) {
+    using S = SkeletonOf<shape>;
+    std::array<double, StageEntries<Real>::numbers_of_piece> numbers;
+    S::numbers_of_piece(whole, middle, half, numbers);
+    const std::span<Real> piece = stage.new_piece();
+    const double per_unit = 1 / unit;
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+        if constexpr (sizeof(Real) == sizeof(float))
+            piece[k] = S::in_units(k, numbers[k], per_unit);
+        else
+            piece[k] = numbers[k];
+    }
+    return piece.data();
+}
 
 // From the field, in double.
 template <Shape shape>
@@ -81,7 +99,7 @@ struct FieldArrivals {
         const auto place = [&](double o, const std::vector<double>& c, double axis) HWY_ATTR {
             return hn::Neg(offset_lanes(o, hn::GatherIndex(d, c.data(), index), middle, axis));
         };
-        return {seen_in_field<shape>(field, stretch, scale, index),
+        return {seen_active<shape>(field, stretch, scale, active, i),
                 {place(stretch.origin.x, field.ax, stretch.axis.x),
                  place(stretch.origin.y, field.ay, stretch.axis.y),
                  place(stretch.origin.z, field.az, stretch.axis.z)},
@@ -96,9 +114,15 @@ struct FieldArrivals {
         return static_cast<std::uint32_t>(active.element[i]);
     }
     [[nodiscard]] std::uint32_t source(std::size_t i) const { return field.source[element(i)]; }
-    // For the lanes of a stage.
+    // For the lanes of a stage, which keeps those of pieces.
     template <class Real>
-    [[nodiscard]] const Real* numbers(std::size_t i) const {
+    [[nodiscard]] const Real* numbers(std::size_t i, StageEntries<Real>& stage) const {
+        if constexpr (narrows<shape>) {
+            if (!active.is_whole && active.piece_half[i] < 1) {
+                return keep_piece<shape>(field.all_numbers().of(element(i)), active.piece_middle[i],
+                                         active.piece_half[i], field.unit, stage);
+            }
+        }
         if constexpr (sizeof(Real) == sizeof(float))
             return field.all_numbers_in_units().of(element(i));
         else
@@ -110,6 +134,7 @@ struct FieldArrivals {
 template <Shape shape>
 struct LocalArrivals {
     using Lanes = F;
+    const Field& field;
     const LocalElements& near;
     Reach<float> reach;
     Vec3<float> middle;
@@ -133,7 +158,13 @@ struct LocalArrivals {
     }
     [[nodiscard]] std::int32_t source(std::size_t i) const { return near.source[i]; }
     template <class>
-    [[nodiscard]] const float* numbers(std::size_t i) const {
+    [[nodiscard]] const float* numbers(std::size_t i, StageEntries<float>& stage) const {
+        if constexpr (narrows<shape>) {
+            if (near.my[i] < 1) {
+                return keep_piece<shape>(field.all_numbers().of(element(i)), double{near.mx[i]},
+                                         double{near.my[i]}, field.unit, stage);
+            }
+        }
         return near.numbers.of(element(i));
     }
     // Those of i .. that the bits name join others.
@@ -316,7 +347,8 @@ void enter_group(const Source& source, const Entering& on, const CoarseCuts& cut
                     std::memcpy(to + 8, quads[2] + 4 * k, 4 * sizeof(Real));
                 }
                 if constexpr (numbered<shape>) {
-                    stage.entry[stage.size].set_numbers(source.template numbers<Real>(i + k));
+                    stage.entry[stage.size].set_numbers(
+                        source.template numbers<Real>(i + k, stage));
                 }
                 ++stage.size;
             }
@@ -369,9 +401,9 @@ StageSums coarse(const Field& field, const Stretch& stretch, double scale, const
 // c - M: beside what the elements' places are off by, and their own roundings, that of the middle's
 // place and of the difference; |place| <= |c - M| + |middle|. `middle` is that of the window,
 // relative to the elements' place.
-StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretch, double middle,
-                           const CoarseCuts& cuts, const StrongOnes<float>& strong,
-                           StageEntries<float>& weak) {
+StageSums enter_from_local(const Field& field, const LocalElements& near,
+                           const LocalStretch& stretch, double middle, const CoarseCuts& cuts,
+                           const StrongOnes<float>& strong, StageEntries<float>& weak) {
     StageSums sums;
     if (strong.entries != nullptr) strong.entries->clear();
     if (strong.others != nullptr) {
@@ -403,7 +435,7 @@ StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretc
     for_groups_of(near.first, [&]<Shape shape, KernelKind kind>(
                                   std::size_t group, std::size_t first, std::size_t end) HWY_ATTR {
         if (strong.others != nullptr) starts.begin(group, strong.others->size());
-        const LocalArrivals<shape> source{near, reach, from};
+        const LocalArrivals<shape> source{field, near, reach, from};
         enter_group<float, shape, kind>(source, on, cuts, first, end, strong, &weak, sums);
     });
     if (strong.others != nullptr) {
@@ -414,9 +446,9 @@ StageSums enter_from_local(const LocalElements& near, const LocalStretch& stretc
     return sums;
 }
 
-StageSums coarse_local(const LocalElements& near, const LocalStretch& stretch, double middle,
-                       const CoarseCuts& cuts, Window& window) {
-    return enter_from_local(near, stretch, middle, cuts, {&window.strong}, window.weak);
+StageSums coarse_local(const Field& field, const LocalElements& near, const LocalStretch& stretch,
+                       double middle, const CoarseCuts& cuts, Window& window) {
+    return enter_from_local(field, near, stretch, middle, cuts, {&window.strong}, window.weak);
 }
 
 StageSums fine(const Field& field, const Stretch& stretch, double scale,
@@ -432,9 +464,10 @@ StageSums fine(const Field& field, const Stretch& stretch, double scale,
     return sums;
 }
 
-StageSums fine_in_float(const LocalElements& near, const LocalStretch& stretch, double middle,
-                        double unit, double cut, Window& window, ActiveElements& others) {
-    return enter_from_local(near, stretch, middle, {.strong = cut, .weak = 0},
+StageSums fine_in_float(const Field& field, const LocalElements& near, const LocalStretch& stretch,
+                        double middle, double unit, double cut, Window& window,
+                        ActiveElements& others) {
+    return enter_from_local(field, near, stretch, middle, {.strong = cut, .weak = 0},
                             {.others = &others, .unit = unit}, window.fine_in_float);
 }
 

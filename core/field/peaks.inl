@@ -138,7 +138,7 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
     for (std::size_t i = first; i < end; i += N) {
         const hn::Vec<I> index = hn::LoadU(di, &candidates.element[i]);
         const M<D> valid = hn::FirstN(d, end - i);
-        const auto e = seen_in_field<shape>(field, stretch, scale, index);
+        const auto e = seen_active<shape>(field, stretch, scale, candidates, i);
         const DistanceRange<D> range =
             LanesOfShape<shape>::distances(e, reach, error_of(d, e.magnitude, reach));
         const V<D> least =
@@ -160,6 +160,10 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
             lanes.put(d, most, &kept.most[count]);
         }
         lanes.put(d, peak, &kept.peak[count]);
+        if constexpr (narrows<shape>) {
+            lanes.put(d, e.m.x, &kept.piece_middle[count]);
+            lanes.put(d, e.m.y, &kept.piece_half[count]);
+        }
         count += lanes.count();
     }
     peaks.add_to(sums);
@@ -176,6 +180,8 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
                 kept.least[to] = kept.least[from];
                 kept.most[to] = kept.most[from];
                 kept.peak[to] = kept.peak[from];
+                kept.piece_middle[to] = kept.piece_middle[from];
+                kept.piece_half[to] = kept.piece_half[from];
             },
             sums);
     }
@@ -184,6 +190,7 @@ void bound_group(const Field& field, const Stretch& stretch, double scale, doubl
 PeakSums bound(const Field& field, const Stretch& stretch, double scale, double cut,
                const ActiveElements& candidates, ActiveElements& kept) {
     kept.make_room(candidates.size());
+    kept.is_whole = false;
     PeakSums sums;
     std::size_t count = 0;
     GroupStarts& starts = kept.first;

@@ -90,6 +90,21 @@ HWY_INLINE Seen<D, shape> seen_in_field(const Field& field, const Stretch& stret
     return e;
 }
 
+// Those of a list from i on, as far as they have been narrowed down.
+template <Shape shape>
+HWY_INLINE Seen<D, shape> seen_active(const Field& field, const Stretch& stretch, double scale,
+                                      const ActiveElements& active, std::size_t i) {
+    Seen<D, shape> e =
+        seen_in_field<shape>(field, stretch, scale, hn::LoadU(I(), &active.element[i]));
+    if constexpr (narrows<shape>) {
+        if (!active.is_whole) {
+            e.m.x = hn::LoadU(D(), &active.piece_middle[i]);
+            e.m.y = hn::LoadU(D(), &active.piece_half[i]);
+        }
+    }
+    return e;
+}
+
 template <Shape shape>
 HWY_INLINE Seen<F, shape> seen_local(const LocalElements& near, const PartNumbers<float>& numbers,
                                      const Reach<float>& reach, std::size_t i) {

@@ -36,11 +36,29 @@ struct NearestPart {
     Nearest at;
 };
 
+// Less than the part's s there, as its ball tells.
+double least_of_ball(const Field& field, std::size_t i, const Vec3d& from_a) {
+    return with_field_shape(field.shape[i], [&]<class S>() {
+        if constexpr (S::is_taper) {
+            return 0.0;
+        } else {
+            const Ball ball = S::ball(field.columns(i));
+            const Vec3d center = ball.center - field.a(i), away = from_a - center;
+            const auto size = [](const Vec3d& v) { return std::sqrt(dot(v, v)); };
+            const double distance =
+                size(away) - ball.radius - 0x1p-45 * (size(from_a) + size(center) + ball.radius);
+            const double q = std::max(distance, 0.0) / field.width[i];
+            return q * q * (1 - 0x1p-40);
+        }
+    });
+}
+
 template <class Offset>
 NearestPart nearest_of(const Field& field, std::span<const std::uint32_t> parts,
                        const Offset& offset_of) {
     NearestPart best{parts[0], nearest(field, parts[0], offset_of(parts[0]))};
     for (const std::uint32_t i : parts.subspan(1)) {
+        if (least_of_ball(field, i, offset_of(i)) > best.at.s + 2 * tie * (best.at.s + 1)) continue;
         const Nearest at = nearest(field, i, offset_of(i));
         const Vec3d here = scaled(at.away, field.width[i]),
                     there = scaled(best.at.away, field.width[best.part]), between = here - there;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -33,11 +34,19 @@ struct StageEntries {
     std::vector<BundleEntry<Real>> entry;
     std::vector<std::uint32_t> element;  // index into Field
     std::size_t size = 0;
+    // Numbers that entries point to, of parts that were narrowed down: they stay where they are.
+    static constexpr std::size_t numbers_of_piece = 32;
+    std::deque<std::array<Real, numbers_of_piece>> piece;
+    std::size_t pieces = 0;
 
     [[nodiscard]] std::span<const std::uint32_t> elements() const { return {element.data(), size}; }
     void clear() {
-        size = 0;
+        size = pieces = 0;
         present = 0;
+    }
+    [[nodiscard]] std::span<Real> new_piece() {
+        if (pieces == piece.size()) piece.emplace_back();
+        return piece[pieces++];
     }
     // The last so many entries are all of that group.
     void end_group(std::size_t group, std::size_t entries) {

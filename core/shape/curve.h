@@ -45,8 +45,17 @@ struct CurveSkeleton {
 
     [[nodiscard]] std::vector<SkeletonPart> split() const { return curve_arcs(control_points); }
     static std::size_t size_of(const SkeletonColumns&) { return curve_arc::most_numbers; }
-    static float in_units(const SkeletonColumns&, std::size_t k, double value, double per_unit) {
+    static float in_units(std::size_t k, double value, double per_unit) {
         return curve_arc::in_units(k, value, per_unit);
+    }
+    static float in_units(const SkeletonColumns&, std::size_t k, double value, double per_unit) {
+        return in_units(k, value, per_unit);
+    }
+
+    // What it is narrowed down to: m.x and m.y are the middle and the half of a piece.
+    static void numbers_of_piece(const double* numbers, double middle, double half,
+                                 std::span<double, curve_arc::most_numbers> piece) {
+        curve_arc::numbers_of_piece({numbers, curve_arc::most_numbers}, middle, half, piece);
     }
 
     static Surroundings surroundings(const SkeletonColumns& c) {
@@ -190,19 +199,18 @@ struct ShapeLanes<CurveSkeleton> {
     template <class Tag>
     static HWY_INLINE ProvedFoot<Tag> proved_foot(Tag d, const BundleEntry<hn::TFromD<Tag>>& e,
                                                   const Vec3v<Tag>& p, V<Tag> reach) {
-        M<Tag> is_end;
         return ask_entry(
             d, e, p, [&](const auto& arc) HWY_ATTR __attribute__((always_inline)) {
-                return arc.proved(reach, is_end);
+                return arc.proved(reach).foot;
             });
     }
 
     // Some arcs' middles, from where places are relative to; and the axis' point at t from there.
     template <class Tag>
-    static HWY_INLINE Vec3v<Tag> middle_of(const Seen<Tag, shape>& e) {
+    static HWY_INLINE Vec3v<Tag> middle_of(const Seen<Tag, shape>& e, const ArcPiece<Tag>& number) {
         using namespace curve_arc;
-        return {hn::Add(e.v.x, e.number(at_k0)), hn::Add(e.v.y, e.number(at_k0 + 1)),
-                hn::Add(e.v.z, e.number(at_k0 + 2))};
+        return {hn::Add(e.v.x, number(at_k0)), hn::Add(e.v.y, number(at_k0 + 1)),
+                hn::Add(e.v.z, number(at_k0 + 2))};
     }
     template <class Tag>
     static HWY_INLINE Vec3v<Tag> from_middle(const Vec3v<Tag>& middle,
@@ -218,18 +226,22 @@ struct ShapeLanes<CurveSkeleton> {
                                               const Reach<hn::TFromD<Tag>>& s, hn::TFromD<Tag> t,
                                               V<Tag> reach, V<Tag> error) {
         const Tag d;
-        const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-            return e.number(k);
-        };
+        const ArcPiece<Tag> number(e);
         PartFoot<Tag> part;
-        M<Tag> is_end;
         part.error = of_curve(e, s, error);
-        part.foot = ArcFoot(d, number, from_middle(middle_of(e), s.axis, t))
-                        .proved(hn::Add(reach, part.error), is_end);
+        const ProvedArc<Tag> arc = ArcFoot(d, number, from_middle(middle_of(e, number), s.axis, t))
+                                       .proved(hn::Add(reach, part.error));
+        part.foot = arc.foot;
         part.length = hn::Mul(number(curve_arc::at_radius), constant(d, 2));
-        // An end of D that is concave along an arc and its neighbour is not the nearest of both: of these arcs
-        // only the curve's own ends may be.
-        part.never = hn::And(is_end, hn::Eq(number(curve_arc::at_own_end), hn::Zero(d)));
+        // Where D is concave no place is the nearest but the curve's own ends.
+        // Where no q is known 2 reach |y - at| is bounded by the length alone.
+        const M<Tag> is_known = hn::Or(arc.is_end, hn::Gt(arc.q, hn::Zero(d)));
+        part.foot.pull =
+            hn::IfThenElse(is_known, part.foot.pull, hn::Add(part.length, part.length));
+        part.never = hn::And(arc.is_end, hn::Eq(number(curve_arc::at_own_end), hn::Zero(d)));
+        part.at = arc.x;
+        part.q = arc.q;
+        part.pull = hn::MulAdd(reach, number(curve_arc::at_fastest), arc.G);
         return part;
     }
     // What places are off by, with c and the choice of the nearest.
@@ -260,10 +272,8 @@ struct ShapeLanes<CurveSkeleton> {
         using Real = hn::TFromD<Tag>;
         const Tag d;
         error = of_curve(e, s, error);
-        const auto number = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-            return e.number(k);
-        };
-        const Vec3v<Tag> middle = middle_of(e);
+        const ArcPiece<Tag> number(e);
+        const Vec3v<Tag> middle = middle_of(e, number);
         const V<Tag> fastest = number(at_fastest), turn = number(at_turn);
         struct AtEnd {
             V<Tag> least, here, at_other;
@@ -322,14 +332,15 @@ struct ShapeLanes<CurveSkeleton> {
         using Margin = Margins<Real>;
         const Tag d;
         const V<Tag> zero = hn::Zero(d), one = constant(d, 1);
-        const V<Tag> slowest = e.number(at_slowest), fastest = e.number(at_fastest),
-                     turn = e.number(at_turn), radius = e.number(at_radius);
+        const ArcPiece<Tag> number(e);
+        const V<Tag> slowest = number(at_slowest), fastest = number(at_fastest),
+                     turn = number(at_turn), radius = number(at_radius);
         const V<Tag> farthest =
             hn::Sqrt(hn::Div(hn::Mul(most, hn::Set(d, Margin::more)), e.inverse_square));
         const V<Tag> square = hn::Max(square_of(slowest), hn::Set(d, least_square<Real>));
-        const Vec3v<Tag> middle = middle_of(e);
-        const Vec3v<Tag> k1{e.number(at_k1), e.number(at_k1 + 1), e.number(at_k1 + 2)},
-            k2{e.number(at_k2), e.number(at_k2 + 1), e.number(at_k2 + 2)};
+        const Vec3v<Tag> middle = middle_of(e, number);
+        const Vec3v<Tag> k1{number(at_k1), number(at_k1 + 1), number(at_k1 + 2)},
+            k2{number(at_k2), number(at_k2 + 1), number(at_k2 + 2)};
         const Vec3v<Tag> v0 = from_middle(middle, s.axis, s.begin),
                          v1 = from_middle(middle, s.axis, s.end);
         const V<Tag> g0 = dot<Tag>(v0, k1), g1 = dot<Tag>(v1, k1);
@@ -337,7 +348,7 @@ struct ShapeLanes<CurveSkeleton> {
             hn::MulAdd(hn::Add(e.parameter, fastest), hn::Set(d, 4 * Margin::margin), error),
             hn::Set(d, s.aside()));
         const V<Tag> reach = hn::Add(hn::Max(length_of(d, v0), length_of(d, v1)), aside);
-        const V<Tag> third = e.number(at_third), speeding = e.number(at_speeding);
+        const V<Tag> third = number(at_third), speeding = number(at_speeding);
         // |k2| + |k3| <= |c''| / 2, at the most; and |v.k2| as computed is off by `aside` |k2|
         const V<Tag> across = hn::Max(dot<Tag>(v0, k2), dot<Tag>(v1, k2));
         const V<Tag> inward = hn::Add(hn::MulAdd(hn::Add(reach, fastest), third,
@@ -373,8 +384,8 @@ struct ShapeLanes<CurveSkeleton> {
     }
 
     // With L = |p - a| and S the size: v is off by eta and 2 u (L + S), c(x) by 8 u |c'|, which with the sums
-    // makes `own`; g by 8 u (L + S) |c'| and what v is off by, and x, where B < 1, by that over |g'| >=
-    // |c'|^2 (1 - B), which moves c(x) by 16 u (L + S) / (1 - B). Newton's steps from the middle leave,
+    // makes `own`, twice as much for the coefficients of a piece; g by 12 u (L + S) |c'| and what v is off by, and x, where B < 1, by that over |g'| >=
+    // |c'|^2 (1 - B), which moves c(x) by 24 u (L + S) / (1 - B). Newton's steps from the middle leave,
     // clamped or not,
     //     e' <= N e^2,  N = |g''| / (2 |g'|) <= (3 |c'.c''| + d |c'''|) / (2 |c'|^2 (1 - B)),
     // of a way e <= 1, along the arc |c'| e. Another place is taken where it is nearer by the share m = 16
@@ -391,13 +402,14 @@ struct ShapeLanes<CurveSkeleton> {
         const double share =
             16 * (in_float ? double{Margins<float>::margin} : Margins<double>::margin);
         const V<Tag> zero = hn::Zero(d), one = c(1), tiny = c(on.least_rho);
-        const V<Tag> slowest = e.number(at_slowest), fastest = e.number(at_fastest),
+        const ArcPiece<Tag> number(e);
+        const V<Tag> slowest = number(at_slowest), fastest = number(at_fastest),
                      all = hn::Add(v_length, e.parameter);
         const M<Tag> is_smooth = hn::Gt(inverse, zero), is_proved = hn::Lt(inverse, zero),
                      is_point = hn::Not(hn::Gt(slowest, zero));
         const V<Tag> steeper = hn::Max(hn::Mul(inverse, fastest), one);
         const V<Tag> square = hn::Max(square_of(slowest), square_of(tiny));
-        const V<Tag> speeds = speed_change(d, e.number(at_speeding), square);
+        const V<Tag> speeds = speed_change(d, number(at_speeding), square);
         const V<Tag> n =
             hn::Mul(hn::Div(speeds, hn::Add(square, square)), hn::Mul(steeper, c(1 + 0x1p-10)));
         V<Tag> steps = one;
@@ -407,10 +419,11 @@ struct ShapeLanes<CurveSkeleton> {
             steps = hn::Min(hn::Mul(n, square_of(steps)), one);
         }
         const V<Tag> of_steps = hn::Mul(fastest, hn::IfThenElseZero(is_smooth, steps));
-        const V<Tag> own = hn::MulAdd(c(4 * u), all, hn::Mul(c(16 * u), fastest));
+        const V<Tag> own =
+            hn::MulAdd(c(8 * u), all, hn::Mul(c(32 * u), e.number(curve_arc::at_fastest)));
         const V<Tag> of_place =
-            hn::IfThenZeroElse(is_proved, hn::Mul(hn::Mul(c(16 * u), all), steeper));
-        const V<Tag> of_point = hn::IfThenElseZero(is_point, hn::Mul(c(2), e.number(at_radius)));
+            hn::IfThenZeroElse(is_proved, hn::Mul(hn::Mul(c(24 * u), all), steeper));
+        const V<Tag> of_point = hn::IfThenElseZero(is_point, hn::Mul(c(2), number(at_radius)));
         const V<Tag> value =
             hn::Add(hn::Add(hn::Add(eta, own), hn::Add(of_place, of_steps)), of_point);
         const V<Tag> of_choice = hn::Mul(hn::Mul(own, c(std::sqrt(17 / share))), hn::Sqrt(steeper));

@@ -216,6 +216,53 @@ Vec3<Span> curve_arc::away_at(std::span<const double> numbers, const Vector& v, 
     return away;
 }
 
+// The lanes' form is ArcPiece in curve_foot.inl.
+void curve_arc::numbers_of_piece(std::span<const double> numbers, double middle, double half,
+                                 std::span<double, most_numbers> piece) {
+    const auto vector = [&](std::size_t k) {
+        return Vec3d{numbers[k], numbers[k + 1], numbers[k + 2]};
+    };
+    const auto put = [&](std::size_t k, const Vec3d& v) {
+        for (std::size_t axis = 0; axis < 3; ++axis) piece[k + axis] = v[axis];
+    };
+    const auto norm = [](const Vec3d& v) { return std::sqrt(dot(v, v)); };
+    const double m = middle, h = half;
+    const Vec3d c0 = vector(at_k0), c1 = vector(at_k1), c2 = vector(at_k2), c3 = vector(at_k3);
+    const Vec3d k1 = h * (c1 + m * (2.0 * c2 + (3 * m) * c3)), k2 = (h * h) * (c2 + (3 * m) * c3),
+                k3 = (h * h * h) * c3;
+    put(at_k0, c0 + m * (c1 + m * (c2 + m * c3)));
+    put(at_k1, k1);
+    put(at_k2, k2);
+    put(at_k3, k3);
+    piece[at_g] = dot(k1, k1);
+    piece[at_g + 1] = 3 * dot(k1, k2);
+    piece[at_g + 2] = 2 * dot(k2, k2) + 4 * dot(k1, k3);
+    piece[at_g + 3] = 5 * dot(k2, k3);
+    piece[at_g + 4] = 3 * dot(k3, k3);
+    put(at_begin, k2 - k1 - k3);
+    put(at_end, k1 + k2 + k3);
+    const double n1 = norm(k1), n2 = norm(k2), n3 = norm(k3), bend = 2 * n2 + 3 * n3,
+                 whole_fastest = h * numbers[at_fastest], whole_turn = h * h * numbers[at_turn];
+    const double lost = 0x1p-46 * (whole_fastest + whole_turn);
+    piece[at_slowest] =
+        numbers[at_slowest] > 0 ? std::max(h * numbers[at_slowest], n1 - bend - lost) * less : 0;
+    piece[at_fastest] = std::min(whole_fastest, n1 + bend + lost) * more;
+    piece[at_turn] = std::min(whole_turn, 2 * n2 + 6 * n3 + lost) * more;
+    piece[at_speeding] =
+        std::min(h * h * h * numbers[at_speeding], std::abs(2 * dot(k1, k2)) +
+                                                       std::abs(4 * dot(k2, k2) + 6 * dot(k1, k3)) +
+                                                       18 * n3 * (n2 + n3) + lost * whole_fastest) *
+        more;
+    piece[at_third] = h * h * h * numbers[at_third] * more;
+    piece[at_radius] = (n1 + n2 + n3 + lost) * more;
+    piece[at_lost] = numbers[at_lost];
+    piece[at_lost_square] = numbers[at_lost_square];
+    const double own = numbers[at_own_end];
+    const bool begins = (own == -1 || own == 2) && m - h == -1,
+               ends = (own == 1 || own == 2) && m + h == 1;
+    piece[at_own_end] = begins && ends ? 2 : begins ? -1 : ends ? 1 : 0;
+}
+
 // Between two x D has one least place where g falls all along, and it is at an end where g rises or keeps
 // its sign; what is none of these is cut in two, and what cannot be the nearest falls away.
 curve_arc::Feet curve_arc::feet(std::span<const double> numbers, const Vector& v) {
@@ -421,6 +468,7 @@ std::vector<SkeletonPart> curve_arcs(std::span<const Vec3d> control_points) {
     }
     SkeletonColumns columns;
     columns.a = columns.b = control_points[0];
+    columns.m = {0, 1, 0};  // the middle and the half of its piece: all of it
     columns.parameter = columns.radius = std::ldexp(size * more, exponent);
     std::vector<SkeletonPart> arcs;
     std::vector<std::pair<double, double>> open{{0.5, 0.5}};

@@ -30,6 +30,12 @@ inline constexpr std::size_t at_k0 = 0, at_k1 = 3, at_k2 = 6, at_k3 = 9, at_g = 
                              at_speeding = 26, at_third = 27, at_radius = 28, at_lost = 29,
                              at_lost_square = 30, at_own_end = 31, most_numbers = 32;
 
+// The piece of an arc on which x = middle + half y, y from -1 to 1, is an arc like any other: its numbers, of
+// which no coefficient is off by more than 16 u of the whole arc's, times half to the power that belongs to it.
+// Where x = -1 or 1 is in it that has to be exact. One of no size stays one.
+void numbers_of_piece(std::span<const double> numbers, double middle, double half,
+                      std::span<double, most_numbers> piece);
+
 // An arc is short: |c' - k1| <= |k1| / 4, and 3 |c'.c''| <= |c'|^2 / 3; or, at a cusp, of no size.
 inline constexpr double greatest_turn = 1.0 / 4, greatest_speeding = 1.0 / 3;
 

@@ -8,12 +8,107 @@ namespace {
 template <class Real>
 inline constexpr int newton_steps_of_arcs = sizeof(Real) == sizeof(float) ? 5 : 8;
 
+// The numbers of the pieces of some arcs (curve_arc::numbers_of_piece) whose middle and half are m.x and m.y.
+template <class Tag>
+class ArcPiece {
+  public:
+    template <class Arcs>
+    HWY_INLINE explicit ArcPiece(const Arcs& e) {
+        using namespace curve_arc;
+        using Real = hn::TFromD<Tag>;
+        using Margin = Margins<Real>;
+        const Tag d;
+        const auto c = [&](double value) HWY_ATTR { return constant(d, value); };
+        const auto vector = [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
+            return Vec3v<Tag>{e.number(k), e.number(k + 1), e.number(k + 2)};
+        };
+        const auto plus = [](const Vec3v<Tag>& a, V<Tag> by, const Vec3v<Tag>& b) HWY_ATTR
+            __attribute__((always_inline)) {
+            return Vec3v<Tag>{hn::MulAdd(by, b.x, a.x), hn::MulAdd(by, b.y, a.y),
+                              hn::MulAdd(by, b.z, a.z)};
+        };
+        const auto times =
+            [](V<Tag> by, const Vec3v<Tag>& a) HWY_ATTR __attribute__((always_inline)) {
+            return Vec3v<Tag>{hn::Mul(by, a.x), hn::Mul(by, a.y), hn::Mul(by, a.z)};
+        };
+        const V<Tag> m = e.m.x, h = e.m.y, h2 = hn::Mul(h, h), h3 = hn::Mul(h2, h),
+                     m3 = hn::Mul(m, c(3)), widened = hn::Set(d, Margin::more);
+        const Vec3v<Tag> c0 = vector(at_k0), c1 = vector(at_k1), c2 = vector(at_k2),
+                         c3 = vector(at_k3);
+        const Vec3v<Tag> k1 = times(h, plus(c1, m, plus(plus(c2, m3, c3), c(1), c2))),
+                         k2 = times(h2, plus(c2, m3, c3)), k3 = times(h3, c3);
+        put(at_k0, plus(c0, m, plus(c1, m, plus(c2, m, c3))));
+        put(at_k1, k1);
+        put(at_k2, k2);
+        put(at_k3, k3);
+        const V<Tag> k11 = dot<Tag>(k1, k1), k12 = dot<Tag>(k1, k2), k13 = dot<Tag>(k1, k3),
+                     k22 = dot<Tag>(k2, k2), k23 = dot<Tag>(k2, k3), k33 = dot<Tag>(k3, k3);
+        number_[at_g] = k11;
+        number_[at_g + 1] = hn::Mul(c(3), k12);
+        number_[at_g + 2] = hn::MulAdd(c(2), k22, hn::Mul(c(4), k13));
+        number_[at_g + 3] = hn::Mul(c(5), k23);
+        number_[at_g + 4] = hn::Mul(c(3), k33);
+        const Vec3v<Tag> odd = plus(k1, c(1), k3);
+        put(at_begin, plus(k2, c(-1), odd));
+        put(at_end, plus(k2, c(1), odd));
+        const V<Tag> n1 = hn::Sqrt(k11), n2 = hn::Sqrt(k22), n3 = hn::Sqrt(k33),
+                     bend = hn::MulAdd(c(2), n2, hn::Mul(c(3), n3)),
+                     whole_fastest = hn::Mul(h, e.number(at_fastest)),
+                     whole_turn = hn::Mul(h2, e.number(at_turn));
+        const V<Tag> lost = hn::Mul(hn::Add(whole_fastest, whole_turn), hn::Set(d, Margin::margin));
+        number_[at_slowest] =
+            hn::Mul(hn::Max(hn::Mul(h, e.number(at_slowest)), hn::Sub(hn::Sub(n1, bend), lost)),
+                    hn::Set(d, Margin::less));
+        number_[at_slowest] =
+            hn::IfThenElseZero(hn::Gt(e.number(at_slowest), hn::Zero(d)), number_[at_slowest]);
+        number_[at_fastest] =
+            hn::Mul(hn::Min(whole_fastest, hn::Add(hn::Add(n1, bend), lost)), widened);
+        number_[at_turn] = hn::Mul(
+            hn::Min(whole_turn, hn::Add(hn::MulAdd(c(2), n2, hn::Mul(c(6), n3)), lost)), widened);
+        const V<Tag> speeding = hn::Add(
+            hn::Add(hn::Abs(hn::Add(k12, k12)), hn::Abs(hn::MulAdd(c(4), k22, hn::Mul(c(6), k13)))),
+            hn::MulAdd(hn::Mul(c(18), n3), hn::Add(n2, n3), hn::Mul(lost, whole_fastest)));
+        number_[at_speeding] =
+            hn::Mul(hn::Min(hn::Mul(h3, e.number(at_speeding)), speeding), widened);
+        number_[at_third] = hn::Mul(hn::Mul(h3, e.number(at_third)), widened);
+        number_[at_radius] = hn::Mul(hn::Add(hn::Add(n1, n2), hn::Add(n3, lost)), widened);
+        number_[at_lost] = e.number(at_lost);
+        number_[at_lost_square] = e.number(at_lost_square);
+        const V<Tag> own = e.number(at_own_end), both = c(2), one = c(1), minus_one = c(-1);
+        const M<Tag> has_both = hn::Eq(own, both);
+        const M<Tag> begins = hn::And(hn::Or(has_both, hn::Eq(own, minus_one)),
+                                      hn::Eq(hn::Sub(m, h), minus_one)),
+                     ends = hn::And(hn::Or(has_both, hn::Eq(own, one)), hn::Eq(hn::Add(m, h), one));
+        number_[at_own_end] = hn::IfThenElse(begins, hn::IfThenElse(ends, both, minus_one),
+                                             hn::IfThenElseZero(ends, one));
+    }
+    [[nodiscard]] HWY_INLINE V<Tag> operator()(std::size_t k) const { return number_[k]; }
+
+  private:
+    HWY_INLINE void put(std::size_t k, const Vec3v<Tag>& v) {
+        number_[k] = v.x;
+        number_[k + 1] = v.y;
+        number_[k + 2] = v.z;
+    }
+    V<Tag> number_[curve_arc::most_numbers];
+};
+
+// What is proved of one place x of an arc: with it q and G, which bound all others, or q = 0 where nothing is.
+template <class Tag>
+struct ProvedArc {
+    ProvedFoot<Tag> foot;
+    V<Tag> x, q, G;
+    M<Tag> is_end;  // D is concave
+};
+
 // An arc's cubic and its g (core/shape/curve_arc.h) for v = p - a - k0; number(k) are the arc's numbers.
 template <class Tag, class Number>
 class ArcFoot {
   public:
     using Real = hn::TFromD<Tag>;
     static constexpr int newton_steps = newton_steps_of_arcs<Real>;
+    // From a place that is nearer, and less is asked of them: what they leave is bounded.
+    static constexpr int steps_of_proof = sizeof(Real) == sizeof(float) ? 3 : 5;
 
     HWY_INLINE ArcFoot(Tag, const Number& number, const Vec3v<Tag>& v)
         : number_(number),
@@ -71,30 +166,40 @@ class ArcFoot {
     // + |t| F) / q. Where D is concave along the arc, which it stays while |g'| changes by less than reach |c''|,
     // an end is the nearest: that which no other arc has.
     // What rounding does is as if v and the coefficients of c were others (`errors`), and, with S = (|v| + R) R,
-    // R = |k1| + |k2| + |k3| and the sum of all |g_k| <= 3 S, 64 u S in g, 512 u S in q and 2048 u S in g'.
-    HWY_INLINE ProvedFoot<Tag> proved(V<Tag> reach, M<Tag>& is_end) const {
+    // R = |k1| + |k2| + |k3| and the sum of all |g_k| <= 3 S, 96 u S in g, 768 u S in q and 3072 u S in g', a third of it
+    // for the coefficients of a piece.
+    HWY_INLINE ProvedArc<Tag> proved(V<Tag> reach) const {
         using namespace curve_arc;
         using Margin = Margins<Real>;
         const V<Tag> zero = hn::Zero(d), one = c(1), minus_one = c(-1);
 
-        // The nearest of five places, and on from there.
-        const V<Tag> at_first = square_at(minus_one), at_last = square_at(one);
-        V<Tag> x = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
-        V<Tag> least = hn::Min(at_first, at_last);
-        for (const double place : {-0.5, 0.0, 0.5}) {
-            const V<Tag> square = square_at(c(place));
-            x = hn::IfThenElse(hn::Lt(square, least), c(place), x);
-            least = hn::Min(least, square);
+        // The nearest of five places, and on from there: D(x) = D(0) - 2 (E + O), E even and O odd in x.
+        const V<Tag> e1 = hn::Mul(c(0.5), g1_), e2 = hn::Mul(c(0.25), g3_),
+                     e3 = hn::Mul(c(1.0 / 6), g5_), o1 = hn::Mul(c(1.0 / 3), g2_),
+                     o2 = hn::Mul(c(0.2), g4_);
+        V<Tag> x = zero, gained = zero;
+        V<Tag> at_first = zero, at_last = zero;  // -(D(x) - D(0)) / 2 at the ends
+        for (const double place : {0.5, 1.0}) {
+            const V<Tag> square = c(place * place);
+            const V<Tag> even = hn::Mul(square, hn::MulAdd(square, hn::MulAdd(square, e3, e2), e1));
+            const V<Tag> odd =
+                hn::Mul(c(place), hn::MulAdd(square, hn::MulAdd(square, o2, o1), g0_));
+            at_first = hn::Sub(even, odd);
+            at_last = hn::Add(even, odd);
+            x = hn::IfThenElse(hn::Gt(at_first, gained), c(-place), x);
+            gained = hn::Max(gained, at_first);
+            x = hn::IfThenElse(hn::Gt(at_last, gained), c(place), x);
+            gained = hn::Max(gained, at_last);
         }
         const V<Tag> begun = x;
-        for (int step = 0; step < newton_steps; ++step) x = onward(x);
-        x = hn::IfThenElse(hn::Lt(least, square_at(x)), begun, x);
+        for (int step = 0; step < steps_of_proof; ++step) x = onward(x);
+        x = hn::IfThenElse(hn::Lt(square_at(begun), square_at(x)), begun, x);
 
         const V<Tag> R = number_(at_radius);
         const V<Tag> S =
             hn::Mul(hn::Add(hn::Add(hn::Abs(v_.x), hn::Abs(v_.y)), hn::Add(hn::Abs(v_.z), R)), R);
         const V<Tag> error =
-            hn::MulAdd(S, c(4 * double{Margin::margin}), hn::Mul(number_(at_lost_square), c(64)));
+            hn::MulAdd(S, c(6 * double{Margin::margin}), hn::Mul(number_(at_lost_square), c(64)));
         // On all of the arc and of the reach: g' as far as it is above that, in Bernstein's form.
         const V<Tag> even = hn::Add(g1_, hn::Add(s2_, s4_)), odd = hn::Add(s1_, s3_),
                      inner = hn::Sub(g1_, s4_), half_odd = hn::Mul(c(0.5), hn::Sub(s1_, s3_));
@@ -102,11 +207,11 @@ class ArcFoot {
             hn::Min(hn::Min(hn::Sub(even, hn::Abs(odd)), hn::Sub(inner, hn::Abs(half_odd))),
                     hn::Add(hn::NegMulAdd(c(1.0 / 3), s2_, g1_), s4_));
         const V<Tag> own_end = number_(at_own_end);
-        is_end =
+        const M<Tag> is_end =
             hn::And(hn::Gt(hn::NegMulAdd(c(4), error, least_rise),
                            hn::Mul(hn::Mul(reach, number_(at_turn)), hn::Set(d, Margin::more))),
                     hn::Lt(own_end, c(1.5)));
-        const V<Tag> nearer_end = hn::IfThenElse(hn::Lt(at_first, at_last), minus_one, one);
+        const V<Tag> nearer_end = hn::IfThenElse(hn::Gt(at_first, at_last), minus_one, one);
         x = hn::IfThenElse(is_end, hn::IfThenElse(hn::Eq(own_end, zero), nearer_end, own_end), x);
 
         const V<Tag> h4 = g5_, h3 = hn::MulAdd(x, h4, g4_), h2 = hn::MulAdd(x, h3, g3_),
@@ -140,7 +245,7 @@ class ArcFoot {
             is_end,
             hn::IfThenElse(known, hn::Mul(hn::Mul(c(2), hn::Mul(fastest, G)), inverse), anything));
         foot.in_reach = hn::Or(is_end, hn::Not(known));
-        return foot;
+        return {foot, x, hn::IfThenElseZero(known, q), G, is_end};
     }
 
   private:

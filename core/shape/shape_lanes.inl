@@ -277,6 +277,9 @@ struct PartFoot {
     V<Tag> error;   // of any place of the part, from there
     V<Tag> length;  // no place of the part is farther from the foot
     M<Tag> never;   // within reach no place of this part alone is the element's nearest
+    // Of an arc, not known where q = 0: a place y is at least `square` - 2 G |y - at| + q (y - at)^2 away, |c'| <=
+    // F and pull = G + reach F. y counts within its piece, from -1 to 1.
+    V<Tag> at, q, pull;
 };
 // Stands for what there is no bound of.
 template <class Real>
@@ -310,7 +313,10 @@ using LanesOfShape = ShapeLanes<SkeletonOf<shape>>;
 template <Shape shape>
 inline constexpr bool proves_feet = SkeletonOf<shape>::has_numbers&& SkeletonOf<shape>::has_kinks;
 
-// Whether parts can be told apart by their feet.
+// Whether elements' parts can be told apart by their feet, and whether they are narrowed down to pieces: m.x and
+// m.y are then the piece's.
+template <Shape shape>
+inline constexpr bool narrows = proves_feet<shape>;
 template <Shape shape>
 inline constexpr bool compares_feet = SkeletonOf<shape>::is_joined&& requires(
     const Seen<F, shape>& e, const Reach<float>& s, V<F> x) {

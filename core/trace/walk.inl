@@ -65,6 +65,7 @@ struct Stage<double> {
 };
 
 constexpr int most_steps = 48;
+constexpr double reach_of_steps = 4;  // of the next, in those of the last one
 
 // Of f's other branches, joined elements with b > 0 being the greatest of several parts: on the way to
 // the zero x of the parabola below the one that is known, each rises all along, if its slope is at
@@ -127,6 +128,7 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
         V<Tag> tau = begin, guess_lo = zero, guess_hi = zero;
         V<Tag> last_tau = zero, last_slope = zero;  // of the step before
         M<Tag> guessing = hn::FirstN(d, 0), found = guessing, undecided = guessing;
+        V<Tag> reach = hn::Sub(end, tau);  // as far as which other branches are asked for
         V<Tag> guesses = zero;  // of each lane, so that no lane's way depends on its neighbours
         for (int step = 0; step < most_steps; ++step) {
             const M<Tag> active = hn::Or(walking, guessing);
@@ -135,8 +137,8 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             const Vec3v<Tag> p{hn::MulAdd(tau, direction.x, middle.x),
                                hn::MulAdd(tau, direction.y, middle.y),
                                hn::MulAdd(tau, direction.z, middle.z)};
-            if (joined.any()) {  // asked for up to the end of the window
-                const V<Tag> reach = hn::Max(hn::Sub(end, tau), least_reach);
+            if (joined.any()) {
+                reach = hn::Max(hn::Min(reach, hn::Sub(end, tau)), least_reach);
                 branches.begin(reach, hn::Mul(rough_inverse(d, reach), c(1 - 2 * Margin::rough)),
                                error);
             }
@@ -199,13 +201,22 @@ Walked walk_stage(Tag d, const Stage<hn::TFromD<Tag>>& stage, double threshold,
             const LatestZero<Tag> latest = latest_zero(d, f_lo, slope_lo, fall);
             const V<Tag> latest_tau = hn::Add(tau, latest.x);
             M<Tag> rises = hn::And(walking, hn::And(latest.is_firm, hn::Le(latest_tau, end)));
+            if (joined.any()) rises = hn::And(rises, hn::Le(latest.x, reach));
             if (joined.some_add) {
                 rises = hn::And(rises, no_other_first(d, f_hi, slope_lo, rise, fall, latest.x));
             }
 
             // The parabola above f: up to its zero there is no root.
             const V<Tag> quotient = parabola_zero(d, f_hi, slope_hi, rise);
-            const V<Tag> safe = hn::MulSub(quotient, c(1 - Margin::rough), slack);
+            V<Tag> safe = hn::MulSub(quotient, c(1 - Margin::rough), slack);
+            if (joined.any()) {
+                // What is known of other branches holds as far as they were asked for. Where that is far beyond
+                // the step less may hold it up.
+                safe = hn::Min(safe, hn::Sub(reach, slack));
+                const M<Tag> holds_up =
+                    hn::Gt(hn::Mul(branches.above, safe), hn::Mul(hn::Abs(f_hi), c(0.25)));
+                reach = hn::IfThenElse(holds_up, hn::Mul(safe, c(reach_of_steps)), end);
+            }
             const M<Tag> steps_on = hn::AndNot(rises, walking);
             // Nothing gets on, or a number is lost: not slack < safe < infinity.
             undecided = hn::Or(
