@@ -129,6 +129,8 @@ class BundleField {
     // for it. No coarse stage; `full` has none in float either. A condensed window has no other.
     const Window& full();
     const Window& full_mixed();
+    // Its own elements, all in double. No coarse stage; a condensed window has but the full one.
+    const Window& in_double();
 
     // Likewise a piece of that window about t, for one of its rays alone: rounding is bounded there
     // by what the field is there. Good until the next one.
@@ -199,11 +201,12 @@ class BundleField {
     BundlePart opened_part_;
     Window window_;
     Bounded full_bounded_, about_root_bounded_;
-    Window full_, full_mixed_, about_root_;
+    Window full_, full_mixed_, in_double_, about_root_;
     Bounded along_bounded_;
     Condensed close_;
     CondensedRay condensed_ray_;
-    bool has_full_ = false, has_full_mixed_ = false, has_along_ = false;  // those are of the window
+    bool has_full_ = false, has_full_mixed_ = false, has_in_double_ = false,
+         has_along_ = false;  // those are of the window
 
     double unit_ = 1, scale_ = 1, threshold_ = 1, least_width_ = 1;
     double fine_cut_ = 0, full_cut_ = 0;

@@ -88,8 +88,10 @@ Window& BundleField::open(const Bounded& here, const BundlePart& part, double t0
     w.tau_end = tau(t1) * (1 + 0x1p-22f);
     w.rise = here.rise;
     w.fall = here.fall;
-    w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = has_along_ = false;
+    w.is_complete = w.fine_usable = has_full_ = has_full_mixed_ = has_in_double_ = has_along_ =
+        false;
 
+    w.is_unknown = false;
     w.condensed = nullptr;
     opened_condensed_ = here.is_condensed;
     if (here.is_condensed) {
@@ -158,6 +160,7 @@ void BundleField::enter(const Bounded& here, const BundlePart& part, Window& w) 
 
 Window& BundleField::open_unknown() {
     window_.coarse_usable = false;
+    window_.is_unknown = true;
     window_.condensed = nullptr;
     window_.begin = 0;
     return window_;
@@ -242,6 +245,13 @@ const Window& BundleField::full() {
     }
     take_opened(full_bounded_, all_in_double, full_);
     return full_;
+}
+
+const Window& BundleField::in_double() {
+    if (opened_condensed_) return full();
+    if (!has_in_double_) take_opened(*opened_, all_in_double, in_double_);
+    has_in_double_ = true;
+    return in_double_;
 }
 
 void BundleField::bound_opened_curvature(Bounded& finer) {

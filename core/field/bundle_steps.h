@@ -88,6 +88,7 @@ struct PartFeet {
 template <class Real>
 struct BothFeet {
     PartFeet<Real> feet, second;
+    GroupStarts before;  // of the list
 };
 
 struct BundleSteps {

@@ -33,15 +33,15 @@ struct FootOfPart {
             LanesOfShape<shape>::part_foot(e, reach, middle, H, error_of(d, e.magnitude, reach));
         const ProvedFoot<Tag>& foot = part.foot;
         const V<Tag> widened = hn::Set(d, Margin::more), never = hn::Set(d, infinity<Real>);
-        const V<Tag> less = hn::MulAdd(
+        const V<Tag> within = hn::MulAdd(
             H, hn::MulAdd(hn::Mul(H, constant(d, 0.5)), foot.bend, foot.pull), foot.slack);
         const V<Tag> lost =
             hn::Mul(hn::Mul(part.error, constant(d, 4)),
                     hn::Add(hn::Add(hn::Sqrt(foot.square), part.length), hn::Add(H, part.error)));
-        const V<Tag> rounded = hn::Mul(hn::Add(foot.square, less), hn::Set(d, Margin::margin));
+        const V<Tag> rounded = hn::Mul(hn::Add(foot.square, within), hn::Set(d, Margin::margin));
         const V<Tag> off = hn::MulAdd(lost, widened, rounded);
         least = hn::IfThenElse(part.never, never,
-                               hn::Sub(hn::Sub(foot.square, hn::Mul(less, widened)), off));
+                               hn::Sub(hn::Sub(foot.square, hn::Mul(within, widened)), off));
         most = hn::IfThenElse(part.never, never, hn::Add(foot.square, off));
         x = foot.away.x;
         y = foot.away.y;
@@ -168,7 +168,7 @@ Piece<Real> narrowed(const PartFeet<Real>& feet, std::size_t k, const NearestPla
                to = std::min(feet.at[k] + way, Real{1});
     const Real begin = std::max(std::floor((middle + half * from) * grid) / grid, middle - half),
                end = std::min(std::ceil((middle + half * to) * grid) / grid, middle + half);
-    if (!(end > begin) || end - begin > Real{1.8} * half) return piece;
+    if (!(end > begin) || end - begin > Real{1.75} * half) return piece;
     return {Real{0.5} * (begin + end), Real{0.5} * (end - begin)};
 }
 
@@ -241,11 +241,11 @@ constexpr std::uint64_t groups_that_compare_feet(std::index_sequence<shape...>) 
 // Of a whole list; keep(first, end, to) of a group that compares feet returns where what stays of it ends, and
 // move(from, to) moves any other element.
 template <class List, class Keep, class Move>
-void keep_nearest_of(List& list, const Keep& keep, const Move& move) {
+void keep_nearest_of(List& list, GroupStarts& before, const Keep& keep, const Move& move) {
     constexpr std::uint64_t comparing =
         groups_that_compare_feet(std::make_index_sequence<field_shape_count>());
-    const GroupStarts before = list.first;
-    if ((before.present() & comparing) == 0) return;
+    if ((list.first.present() & comparing) == 0) return;
+    before = list.first;
     std::size_t count = 0;
     list.first.clear();
     for_groups_of(before, [&]<Shape shape, KernelKind>(std::size_t group, std::size_t first,
@@ -274,7 +274,7 @@ void keep_nearest_parts(const Field& field, const Stretch& stretch, double scale
         }
     };
     keep_nearest_of(
-        active,
+        active, feet.before,
         [&]<Shape shape>(std::size_t first, std::size_t end, std::size_t to) HWY_ATTR {
             return keep_nearest<shape>(
                 d, reach, first, end, to,
@@ -306,7 +306,7 @@ void keep_nearest_parts_local(LocalElements& near, const LocalStretch& stretch,
     const Reach<float> reach = reach_of(stretch, near);
     const auto move = [&](std::size_t from, std::size_t to) { move_local(near, from, to); };
     keep_nearest_of(
-        near,
+        near, feet.before,
         [&]<Shape shape>(std::size_t first, std::size_t end, std::size_t to) HWY_ATTR {
             return keep_nearest<shape>(
                 d, reach, first, end, to,

@@ -78,6 +78,7 @@ struct Window {
     StageEntries<float> strong, weak;
     StageBounds strong_bounds, coarse_bounds;  // of the strong ones, of both; per unit
     bool coarse_usable = false;
+    bool is_unknown = false;  // nothing is: it stands for all that was not looked at
     // If not null, both are empty, or there to be looked at only, and this is f + T: it stays where it is.
     const Condensed* condensed = nullptr;
     bool is_rough = false;                // a rough one

@@ -49,7 +49,7 @@ inline constexpr std::array ladder{
               "double, sums compensated", "the same, where rounding hid it", "settle"},
     RungFacts{Rung::walk_along, "walk_along", "of a crowd, next to all, as one polynomial",
               "double", "what walk and enclose do", "alone_near"},
-    RungFacts{Rung::walk_again, "walk_again", "of the list, next to all", "double",
+    RungFacts{Rung::walk_again, "walk_again", "of the window, all", "double",
               "what walk and enclose do", "alone_near"},
     RungFacts{Rung::settle, "settle", "near the root, nothing left out", "intervals",
               "which of some grid lines, where the root is known within a few cells", "alone_near"},

@@ -75,7 +75,7 @@ std::size_t PacketTracer::surface_in(Window& window, const BundlePart& part, con
     }
     if (index_.empty()) return found;
     points_.resize(index_.size());
-    const Window& refined = descent_.field().full();
+    const Window& refined = surfaces.exact ? descent_.field().full() : descent_.field().in_double();
     surfaces.mix(refined.fine.elements());
     packet_steps().surface(refined, field, lanes_, index_, points_.data(), stop);
     if (stop.requested()) return 0;
@@ -128,7 +128,7 @@ std::size_t PacketTracer::isolate(const Field& field, const ElementList& list,
     std::size_t found = 0;
     while (Window* const window = descent_.next(wanted)) {
         const BundlePart part = descent_.part();
-        if (!window->coarse_usable) {
+        if (window->is_unknown) {
             leave(*window, part);
         } else if (climb(*window, part, job) && surfaces != nullptr) {
             found += surface_in(*window, part, field, job.surface_limit, *surfaces, counts.stop);
@@ -207,7 +207,10 @@ void PacketTracer::certify(const Field& field, const ElementList& list, const Ra
 bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
     const Cancellation& stop = job.counts.stop;
     ++job.counts.skipping.windows;
-    if (!job.settings.skipping.coarse) replace(part, Lanes::walking, Lanes::doubtful);
+    // What float cannot tell at all begins in double.
+    if (!job.settings.skipping.coarse || !window.coarse_usable) {
+        replace(part, Lanes::walking, Lanes::doubtful);
+    }
     walk(window, part, job);
     if (stop.requested()) return false;
     if (window.condensed != nullptr && window.is_rough &&
@@ -227,9 +230,11 @@ bool PacketTracer::climb(Window& window, const BundlePart& part, Job& job) {
     if (!any(part, Lanes::candidate) && !any(part, Lanes::doubtful)) return false;
 
     if (window.condensed == nullptr) {
-        descent_.field().complete(window);
-        enclose(window, part, job);
-        if (any(part, Lanes::hidden)) enclose_more(window, part, job);
+        if (any(part, Lanes::candidate)) {
+            descent_.field().complete(window);
+            enclose(window, part, job);
+            if (any(part, Lanes::hidden)) enclose_more(window, part, job);
+        }
     } else {
         enclose_condensed(window, part, job);
     }
@@ -340,7 +345,7 @@ void PacketTracer::walk_again(const BundlePart& part, Job& job) {
     counts.climbers[Rung::walk_again] += static_cast<std::uint64_t>(
         std::count(lanes_.state.begin() + part.first, lanes_.state.begin() + part.end,
                    std::int32_t{Lanes::doubtful}));
-    const Window& whole = descent_.field().full();
+    const Window& whole = descent_.field().in_double();
     const std::uint64_t steps = packet_steps().walk_again(
         whole, descent_.field().threshold(), part.first, part.end, lanes_, counts.stop);
     counts.evaluations += steps;

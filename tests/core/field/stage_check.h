@@ -57,23 +57,33 @@ Vec3<Real> away_from_arc(const Real* numbers, const Vec3<Real>& v) {
     const auto from = [&](Real x) {
         return (v - vector(at_k0)) - x * (vector(at_k1) + x * (vector(at_k2) + x * vector(at_k3)));
     };
-    // The best of many, and between its neighbours by thirds.
+    // The best of many, and between its neighbours by thirds: in long double, since the least of a square tells
+    // where it is to half the digits.
+    using Exact = long double;
+    const auto square_at = [&](Exact x) {
+        Exact sum = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto k = [&](std::size_t at) { return Exact{numbers[at + axis]}; };
+            const Exact off =
+                (Exact{v[axis]} - k(at_k0)) - x * (k(at_k1) + x * (k(at_k2) + x * k(at_k3)));
+            sum += off * off;
+        }
+        return sum;
+    };
     constexpr int places = 64;
-    Real best = -1;
+    Exact best = -1;
     for (int i = 0; i <= places; ++i) {
-        const Real x = static_cast<Real>(2 * i) / places - 1;
-        if (dot(from(x), from(x)) < dot(from(best), from(best))) best = x;
+        const Exact x = Exact{2} * i / places - 1;
+        if (square_at(x) < square_at(best)) best = x;
     }
-    Real lo = std::max(best - Real{2} / places, Real{-1}),
-         hi = std::min(best + Real{2} / places, Real{1});
+    Exact lo = std::max(best - Exact{2} / places, Exact{-1}),
+          hi = std::min(best + Exact{2} / places, Exact{1});
     for (int step = 0; step < 80; ++step) {
-        const Real a = lo + (hi - lo) / 3, b = hi - (hi - lo) / 3;
-        (dot(from(a), from(a)) < dot(from(b), from(b)) ? hi : lo) =
-            dot(from(a), from(a)) < dot(from(b), from(b)) ? b : a;
+        const Exact c = lo + (hi - lo) / 3, e = hi - (hi - lo) / 3;
+        (square_at(c) < square_at(e) ? hi : lo) = square_at(c) < square_at(e) ? e : c;
     }
-    const Real between = (lo + hi) / 2;
-    return dot(from(between), from(between)) < dot(from(best), from(best)) ? from(between)
-                                                                           : from(best);
+    const Exact between = (lo + hi) / 2;
+    return from(static_cast<Real>(square_at(between) < square_at(best) ? between : best));
 }
 
 // At p, relative to the window's middle, along d; in the lengths and the arithmetic of the entries,
