@@ -269,9 +269,9 @@ struct Enclosed {
         const V<D> delta = hn::Mul(hn::Mul(c(2.001), size), inverse);
         V<D> bend = hn::MulAdd(curvature, delta, c(bounds.slope));
         if (task.has_joined) {
-            bend = hn::Add(bend, hn::IfThenElse(hn::Le(delta, reach),
-                                                hn::Max(branches.above, branches.below),
-                                                hn::Add(branches.anywhere, branches.beyond)));
+            bend = hn::Add(
+                bend, hn::IfThenElse(hn::Le(delta, reach), hn::Max(branches.above, branches.below),
+                                     hn::Add(branches.anywhere, branches.beyond)));
         }
         const V<D> slope_lo = hn::Mul(hn::Sub(value.slope, bend), c(1 - 0x1p-40));
         // Then size / slope_lo < delta, and f < -left_out at m - delta.
@@ -359,9 +359,8 @@ HWY_INLINE std::size_t enclose_lanes(const Enclosing& task, const RayLanes<D> (&
                 add_condensed(d, *task.window.along, tau, value[half].f, value[half].slope);
             });
         }
-        for_each_of<n>([&](auto half) HWY_ATTR {
-            enclosed[half].take(task, value[half], branches[half]);
-        });
+        for_each_of<n>([&](auto half)
+                           HWY_ATTR { enclosed[half].take(task, value[half], branches[half]); });
     }
     return steps;
 }

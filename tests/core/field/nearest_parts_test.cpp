@@ -74,8 +74,7 @@ std::map<std::uint32_t, double> distances(const Field& field, const std::vector<
                                           const Vec3d& p) {
     std::map<std::uint32_t, double> least;
     for (const Kept& part : parts) {
-        const auto [at, is_first] =
-            least.try_emplace(field.source[part.element], infinity<double>);
+        const auto [at, is_first] = least.try_emplace(field.source[part.element], infinity<double>);
         at->second = std::min(at->second, distance_to(field, part, p));
     }
     return least;
@@ -125,11 +124,12 @@ void expect_nearest_kept(const Field& field, const Vec3d& origin, const Vec3d& a
     all.take(field.first, elements);
     const Stretch on{origin, axis, spread, radius, middle - half, middle + half};
     const double unit = field.unit;
-    const LocalStretch near_on{axis, {}, spread, radius / unit, -half / unit, half / unit,
-                               middle / unit};
+    const LocalStretch near_on{axis,         {},          spread,       radius / unit,
+                               -half / unit, half / unit, middle / unit};
     const BundleSteps& steps = bundle_steps();
     ActiveElements active;
-    steps.bound(field, on, field.scale, -1, all, active);  // but for parts that are farther all over
+    steps.bound(field, on, field.scale, -1, all,
+                active);  // but for parts that are farther all over
     LocalElements near;
     near.make_room(active.size());
     steps.enter_local(field, on, middle, active, near);
@@ -141,8 +141,8 @@ void expect_nearest_kept(const Field& field, const Vec3d& origin, const Vec3d& a
         steps.keep_nearest_parts(field, on, field.scale, active, feet);
     }
     for (std::size_t k = 0; k < near.size(); ++k) {
-        kept[0].push_back({static_cast<std::size_t>(near.element[k]), double{near.mx[k]},
-                           double{near.my[k]}});
+        kept[0].push_back(
+            {static_cast<std::size_t>(near.element[k]), double{near.mx[k]}, double{near.my[k]}});
     }
     for (std::size_t k = 0; k < active.size(); ++k) {
         kept[1].push_back({static_cast<std::size_t>(active.element[k]), active.piece_middle[k],
@@ -158,8 +158,7 @@ void expect_nearest_kept(const Field& field, const Vec3d& origin, const Vec3d& a
         const double share = random.chance(0.5) ? 1 : random.uniform(0, 1);
         const double t = random.chance(0.3) ? middle + half * random.sign()
                                             : middle + random.uniform(-half, half);
-        const Vec3d p =
-            origin + t * axis + 0.999999 * share * (radius + t * spread) * side;
+        const Vec3d p = origin + t * axis + 0.999999 * share * (radius + t * spread) * side;
         ++counts.points;
         const std::map<std::uint32_t, double> truth = distances(field, whole, p);
         for (const std::vector<Kept>& list : kept) {
@@ -186,13 +185,15 @@ TEST_P(NearestPartsOf, StayOnEveryInstructionSet) {
         for (int trial = 0; trial < 250; ++trial) {
             SCOPED_TRACE("trial " + std::to_string(trial));
             const Field field = compile(bent_scene(GetParam(), random));
-            const Vec3d target = random.in_cube(1.5), origin = target + 4.0 * unit(random.in_cube(1));
+            const Vec3d target = random.in_cube(1.5),
+                        origin = target + 4.0 * unit(random.in_cube(1));
             const Vec3d axis = unit(target - origin);
             const double half = std::pow(10.0, random.uniform(-3, -0.3));
             const double radius = random.chance(0.3) ? 0 : half * random.uniform(0, 2);
             const double spread = random.chance(0.5) ? 0 : half * random.uniform(0, 0.3);
-            expect_nearest_kept(field, origin, axis, std::sqrt(dot(target - origin, target - origin)),
-                                half, radius, spread, random, counts);
+            expect_nearest_kept(field, origin, axis,
+                                std::sqrt(dot(target - origin, target - origin)), half, radius,
+                                spread, random, counts);
             if (HasFatalFailure()) return;
         }
         std::printf("%.*s: %zu points, %zu parts, %zu kept, %zu pieces\n",
